@@ -1,0 +1,66 @@
+#include "certify.hpp"
+
+#include "base/log.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace amontons {
+
+Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<ContactSamples>& samples, Vec unknowns) {
+  const auto pairs = pair_names(scene);
+  const auto forces = ledger.nodal_external_forces(unknowns);
+  const auto& deck = scene.deck.certificate;
+  const auto state = scene.problem->state_at(unknowns);
+  return certify({.mesh = scene.mesh,
+                  .space = scene.deck.space,
+                  .displacement = state.displacement,
+                  .pairs = pairs,
+                  .samples = samples,
+                  .external_forces = forces,
+                  .energy = {.stored = ledger.stored_energy(),
+                             .external_work = ledger.external_work(),
+                             .work_uncertainty = ledger.work_uncertainty(),
+                             .virtual_work_defect = ledger.virtual_work_defect(),
+                             .virtual_work_scale = ledger.virtual_work_scale()},
+                  .tolerances = {.penetration = deck.penetration,
+                                 .tension = deck.tension,
+                                 .complementarity = deck.complementarity,
+                                 .balance = deck.balance,
+                                 .energy = deck.energy,
+                                 .volume_ratio = deck.volume_ratio}});
+}
+
+bool CertificateRecord::add(const Certificate& certificate, double time) {
+  if (worst_.empty())
+    for (const auto& item : certificate.items) worst_.push_back({item, time});
+  for (std::size_t i = 0; i < worst_.size(); ++i) {
+    const auto& item = certificate.items[i];
+    auto& worst = worst_[i];
+    // The smallest volume ratio is the worst one; of all others the largest value. A failure beats any pass.
+    const bool larger = item.name == "volume_ratio" ? item.value < worst.item.value : item.value > worst.item.value;
+    if ((worst.item.passed && !item.passed) || (worst.item.passed == item.passed && larger)) worst = {item, time};
+  }
+  if (!certificate.passed()) ++failed_increments_;
+  return certificate.passed();
+}
+
+nlohmann::ordered_json CertificateRecord::to_json() const {
+  nlohmann::ordered_json json;
+  json["passed"] = passed();
+  json["failed_increments"] = failed_increments_;
+  for (const auto& [item, time] : worst_)
+    json["items"][item.name] = {{"worst", item.value}, {"tolerance", item.tolerance}, {"passed", item.passed},
+                                {"time", time}, {"where", item.where}};
+  return json;
+}
+
+std::vector<std::string> CertificateRecord::failures() const {
+  std::vector<std::string> lines;
+  for (const auto& [item, time] : worst_)
+    if (!item.passed)
+      lines.push_back(formatted("%s is %.3g at t = %g, allowed %.3g%s%s", item.name.c_str(), item.value, time, item.tolerance,
+                                item.where.empty() ? "" : ": ", item.where.c_str()));
+  return lines;
+}
+
+} // namespace amontons

@@ -1,0 +1,320 @@
+// The declaration of the deck: every key with its type, unit, range, default (that of the struct) and sentence.
+#include "deck.hpp"
+
+#include "base/error.hpp"
+#include "deck/rule.hpp"
+#include "deck_checks.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace amontons {
+
+namespace {
+
+const std::string group_meaning = "name of a physical group of the mesh";
+
+ObjectRule<VectorDeck> components(const std::string& unit) {
+  const auto component = [](std::size_t i) {
+    return [i](auto& vector) -> auto& { return vector[i]; };
+  };
+  ObjectRule<VectorDeck> rule;
+  rule.optional("x", component(0), expression(unit), "Component along x (the radius when axisymmetric).")
+      .optional("y", component(1), expression(unit), "Component along y (the axis when axisymmetric).")
+      .optional("z", component(2), expression(unit), "Component along z; with space: solid only.");
+  return rule;
+}
+
+ObjectRule<MeshDeck> mesh_rule() {
+  ObjectRule<MeshDeck> rule;
+  rule.required("file", &MeshDeck::file, text("file, relative to the deck's folder"),
+                "The mesh: a .geo file, meshed by gmsh, or a .msh file (format 2.2 or 4.1), read as it is.")
+      .optional("parameters", &MeshDeck::parameters, map_of("name of a DefineConstant of the .geo", number("any")),
+                "Values for the constants that the .geo file declares with DefineConstant.")
+      .optional("order", &MeshDeck::order, integer(Range::between(1, 2)),
+                "Polynomial order of the elements. When absent: 1 for a .geo file, the file's own for a .msh file.")
+      .optional("refine", &MeshDeck::refine, integer(Range::between(0, 8)),
+                "Uniform refinements after distribution; each halves the size of all cells.");
+  return rule;
+}
+
+WordRule<Space> space_rule() {
+  WordRule<Space> rule;
+  rule.word("plane_strain", Space::PlaneStrain, "2D, no strain out of the plane, forces per unit thickness.")
+      .word("plane_stress", Space::PlaneStress, "2D, no stress out of the plane, forces per unit thickness.")
+      .word("axisymmetric", Space::Axisymmetric, "2D, x is the radius and y the axis, forces of the full turn.")
+      .word("solid", Space::Solid, "3D.");
+  return rule;
+}
+
+WordRule<Kinematics> kinematics_rule() {
+  WordRule<Kinematics> rule;
+  rule.word("small", Kinematics::Small, "Small strains; contact normals and areas of the reference configuration.")
+      .not_yet("finite", "Use `small` and keep strains and rotations below a few per cent.");
+  return rule;
+}
+
+ObjectRule<MaterialDeck> material_rule() {
+  ObjectRule<ElasticDeck> elastic;
+  elastic.required("E", &ElasticDeck::young, number("stress", Range::above(0)), "Young's modulus.")
+      .required("nu", &ElasticDeck::poisson, number("1", Range::inside(-1, 0.5)), "Poisson's ratio.");
+  TaggedRule<decltype(MaterialDeck::law)> law;
+  law.tag("elastic", elastic, "Linear isotropic elasticity.");
+  ObjectRule<MaterialDeck> rule;
+  rule.choice(&MaterialDeck::law, law)
+      .optional("density", &MaterialDeck::density, number("mass / length^3", Range::at_least(0)),
+                "Mass density; body_force expressions know it as rho.");
+  return rule;
+}
+
+ObjectRule<BoundaryDeck> boundary_rule() {
+  ObjectRule<BoundaryDeck> rule;
+  rule.required("on", &BoundaryDeck::on, text(group_meaning), "The physical group that the conditions act on.")
+      .optional("displacement", &BoundaryDeck::displacement, components("length"),
+                "Prescribed displacement; components that are left out are free.")
+      .optional("traction", &BoundaryDeck::traction, components("force / area"), "Force per reference area.")
+      .optional("pressure", &BoundaryDeck::pressure, expression("force / area"),
+                "Pressure on the surface; positive pushes into the body.")
+      .optional("resultant", &BoundaryDeck::resultant, components("force"),
+                "Total force on the group, which moves as one in that direction.");
+  return rule;
+}
+
+TaggedRule<MasterDeck> master_rule() {
+  const auto point = [] { return list_of(number("length"), 2, 3); };
+  const auto direction = [] { return list_of(number("1"), 2, 3); };
+  const std::string moves = "Displacement of the rigid shape; zero where left out.";
+  ObjectRule<PlaneDeck> plane;
+  plane.required("point", &PlaneDeck::point, point(), "A point of the plane: [x, y] or [x, y, z].")
+      .required("normal", &PlaneDeck::normal, direction(),
+                "Direction out of the rigid body, towards the deformable one; of any length but zero.")
+      .optional("displacement", &PlaneDeck::displacement, components("length"), moves);
+  ObjectRule<SphereDeck> sphere;
+  sphere.required("centre", &SphereDeck::centre, point(), "Centre: [x, y] or [x, y, z]; on the axis when axisymmetric.")
+      .required("radius", &SphereDeck::radius, number("length", Range::above(0)), "Radius.")
+      .optional("displacement", &SphereDeck::displacement, components("length"), moves)
+      .not_yet("inside", "A cavity must be meshed as a body of its own with a stiff material.");
+  ObjectRule<CylinderDeck> cylinder;
+  cylinder.required("centre", &CylinderDeck::centre, point(), "A point of the axis: [x, y] or [x, y, z].")
+      .optional("axis", &CylinderDeck::axis, direction(),
+                "Direction of the axis; with space: solid only, and required there.")
+      .required("radius", &CylinderDeck::radius, number("length", Range::above(0)), "Radius.")
+      .optional("displacement", &CylinderDeck::displacement, components("length"), moves);
+  TaggedRule<MasterDeck> rule;
+  rule.bare(located(text(group_meaning)))
+      .tag("plane", plane, "Rigid half-space.")
+      .tag("sphere", sphere, "Rigid ball; a disc in plane strain and plane stress.")
+      .tag("cylinder", cylinder, "Rigid cylinder of infinite length; a disc in plane strain and plane stress.")
+      .not_yet("self", "Split the surface into two physical groups and declare them as slave and master.");
+  return rule;
+}
+
+TaggedRule<EnforceDeck> enforce_rule() {
+  const std::string alpha = "Augmentation stiffness in units of (tangent modulus / facet size).";
+  ObjectRule<SemismoothDeck> semismooth;
+  semismooth.optional("alpha", &SemismoothDeck::alpha, number("1", Range::above(0)),
+                      alpha + " Has no influence on the solution, some on the Newton iterations.");
+  ObjectRule<UzawaDeck> uzawa;
+  uzawa
+      .optional("alpha", &UzawaDeck::alpha, number("1", Range::above(0)),
+                alpha + " Has no influence on the solution; larger: fewer outer iterations, harder inner ones.")
+      .optional("tolerance", &UzawaDeck::tolerance, number("1", Range::above_up_to(0, 0.01)),
+                "Relative change of the multipliers at which the outer loop stops.")
+      .optional("max_iterations", &UzawaDeck::max_iterations, integer(Range::at_least(1)),
+                "Outer iterations after which the increment has failed.");
+  ObjectRule<PenaltyDeck> penalty;
+  penalty.optional(
+      "alpha", &PenaltyDeck::alpha, number("1", Range::above(0)),
+      "Penalty stiffness in units of (tangent modulus / facet size); larger: less penetration, harder to solve.");
+  TaggedRule<EnforceDeck> rule;
+  rule.tag("semismooth", semismooth, "Nodal multipliers solved together with the displacements by one Newton method.",
+           "P. Alart, A. Curnier, Comput. Methods Appl. Mech. Engrg. 92 (1991) 353-375.")
+      .tag("uzawa", uzawa,
+           "Nodal multipliers updated in an outer loop (augmented Lagrangian); displacements only inside.",
+           "J. C. Simo, T. A. Laursen, Computers & Structures 42 (1992) 97-116.")
+      .tag("penalty", penalty, "Contact traction proportional to the penetration; approximate.",
+           "N. Kikuchi, J. T. Oden, Contact Problems in Elasticity, SIAM (1988).")
+      .not_yet("vi", "Use `semismooth`, which solves the same conditions exactly.");
+  return rule;
+}
+
+ObjectRule<ContactDeck> contact_rule() {
+  TaggedRule<decltype(ContactDeck::projection)> projection;
+  projection.tag("closest_point", ObjectRule<ClosestPointDeck>(), "The closest point of the master surface.")
+      .tag("slave_normal", ObjectRule<SlaveNormalDeck>(), "Along the slave's normal: robust on coarse master facets.");
+  ObjectRule<FacetIntegrationDeck> facet;
+  facet.optional("order", &FacetIntegrationDeck::order, integer(Range::between(1, 40)),
+                 "Polynomial degree integrated exactly on a slave facet.");
+  TaggedRule<decltype(ContactDeck::integration)> integration;
+  integration.tag("facet", facet, "Gauss points on the slave facets.")
+      .not_yet("segment", "Use {facet: {order: ...}} with a higher order.");
+  ObjectRule<ContactDeck> rule;
+  rule.required("name", &ContactDeck::name, identifier("name of the pair in the results"), "Names the pair in results.")
+      .required("slave", &ContactDeck::slave, text(group_meaning),
+                "The surface that carries quadrature points and multipliers; take the finer or the softer one.")
+      .required("master", &ContactDeck::master, master_rule(), "The surface projected onto, or a rigid shape.")
+      .optional("enforce", &ContactDeck::enforce, enforce_rule(), "How the contact conditions are enforced.")
+      .optional("projection", &ContactDeck::projection, projection, "How a slave point finds its master point.")
+      .optional("integration", &ContactDeck::integration, integration, "How the slave surface is integrated over.")
+      .optional(
+          "search_distance", &ContactDeck::search_distance, number("length", Range::above(0)),
+          "How far apart surfaces may be and still be watched. When absent: a tenth of the diagonal of the smaller "
+          "surface's bounding box.")
+      .not_yet("friction", "Leave the key out: contact without it is frictionless.");
+  return rule;
+}
+
+ObjectRule<StepDeck> step_rule() {
+  ObjectRule<AutoIncrements> automatic;
+  const auto fraction = [] { return number("1", Range::above_up_to(0, 1)); };
+  automatic.optional("first", &AutoIncrements::first, fraction(), "First increment as a fraction of the step.")
+      .optional("smallest", &AutoIncrements::smallest, fraction(),
+                "Fraction of the step below which an increment is not cut again: the run ends with status 3.")
+      .optional("largest", &AutoIncrements::largest, fraction(), "Largest increment as a fraction of the step.")
+      .optional("target_iterations", &AutoIncrements::target_iterations, integer(Range::at_least(1)),
+                "Newton iterations at which the increment is kept; fewer make it grow, more make it shrink.")
+      .not_yet("path_tolerance", "Bound the increments with `largest` instead.")
+      .check([](const DeckNode& node, const AutoIncrements& value, Reading& reading) {
+        if (value.smallest > value.first || value.first > value.largest)
+          reading.fail(node.place, node.path + " must have smallest <= first <= largest, but has " +
+                                       number_text(value.smallest) + ", " + number_text(value.first) + ", " +
+                                       number_text(value.largest) + ".");
+      });
+  TaggedRule<IncrementsDeck> increments;
+  increments.bare(integer(Range::at_least(1))).tag("auto", automatic, "Increments chosen by Newton's effort.");
+  ObjectRule<StepDeck> rule;
+  rule.required("name", &StepDeck::name, identifier("name of the step in the results"), "Names the step.")
+      .required("to", &StepDeck::to, number("time", Range::above(0)),
+                "Time at the end of the step; the first step begins at 0, each other one where the one before it ends.")
+      .optional("increments", &StepDeck::increments, increments, "Number of equal increments, or {auto: {...}}.");
+  return rule;
+}
+
+ObjectRule<CertificateDeck> certificate_rule() {
+  const auto tolerance = [] { return number("1", Range::above_up_to(0, 1)); };
+  ObjectRule<CertificateDeck> rule;
+  rule.optional("penetration", &CertificateDeck::penetration, tolerance(), "Largest penetration / local facet size.")
+      .optional("tension", &CertificateDeck::tension, tolerance(),
+                "Largest tensile contact traction / largest pressure.")
+      .optional("complementarity", &CertificateDeck::complementarity, tolerance(),
+                "Sum of |pressure| |gap| / (total contact force x facet size).")
+      .optional("balance", &CertificateDeck::balance, tolerance(), "Force and moment out of balance / force scale.")
+      .optional("energy", &CertificateDeck::energy, tolerance(), "Violation of the energy bounds / external work.")
+      .optional("volume_ratio", &CertificateDeck::volume_ratio, number("1", Range::between(0, 0.99)),
+                "Smallest volume ratio det F allowed.");
+  return rule;
+}
+
+ObjectRule<OutputDeck> output_rule() {
+  WordRule<std::string> field;
+  field.word("displacement", "displacement", "Displacement of the nodes.")
+      .word("stress", "stress", "Stress and von Mises stress.")
+      .word("contact", "contact", "Pressure, gap and status on the contact surfaces.");
+  ObjectRule<OutputDeck> rule;
+  rule.optional("directory", &OutputDeck::directory, text("folder"),
+                "Where results go, from the folder that the program runs in. When absent: results/<deck name>.")
+      .optional("every", &OutputDeck::every, integer(Range::at_least(1)),
+                "Fields are written at each so many accepted increments, and at the end of each step.")
+      .optional("fields", &OutputDeck::fields, list_of(located(Rule<std::string>(field))), "Which fields are written.")
+      .not_yet("history", "history.csv always holds reactions and the resultants of every contact pair.");
+  return rule;
+}
+
+/// Body forces know the density of their body's material as rho.
+void tell_densities(const Deck& deck, Reading& reading) {
+  for (const auto& [body, material] : deck.bodies) {
+    const auto found = deck.materials.find(material.value);
+    if (found == deck.materials.end()) continue;
+    auto& names = reading.entry_names[body];
+    if (found->second.value.density > 0)
+      names.constants["rho"] = found->second.value.density;
+    else
+      names.missing["rho"] = "Give material '" + material.value + "' a density to use rho.";
+  }
+}
+
+Rule<Deck> deck_rule() {
+  ObjectRule<Deck> rule;
+  rule.optional("constants", &Deck::constants, constants_table(),
+                "Numbers with names, for all other numbers and expressions; each may use those above it.")
+      .optional("title", &Deck::title, text(""), "One line for results and plots.")
+      .required("mesh", &Deck::mesh, mesh_rule(), "The mesh of all bodies.")
+      .required("space", &Deck::space, space_rule(), "Dimension and kind of the problem.")
+      .optional("kinematics", &Deck::kinematics, kinematics_rule(), "Small or finite strains.")
+      .required("materials", &Deck::materials,
+                map_of("name of the material", located(Rule<MaterialDeck>(material_rule())), 1), "Materials by name.")
+      .required("bodies", &Deck::bodies, map_of("physical group of cells", located(text("name of a material")), 1),
+                "The material of each body; a body is a physical group of cells.")
+      .then([](const DeckNode&, Deck& deck, Reading& reading) { tell_densities(deck, reading); })
+      .optional("boundary", &Deck::boundary, list_of(Rule<BoundaryDeck>(boundary_rule())), "Boundary conditions.")
+      .optional("body_force", &Deck::body_force,
+                map_of("body", located(Rule<VectorDeck>(components("force / volume")))), "Force per volume of bodies.")
+      .optional("contact", &Deck::contact, list_of(Rule<ContactDeck>(contact_rule())),
+                "Pairs of surfaces that may touch.")
+      .required("steps", &Deck::steps, list_of(Rule<StepDeck>(step_rule()), 1), "The course of the run in time t.")
+      .optional("certificate", &Deck::certificate, certificate_rule(),
+                "Tolerances of the checks that every accepted increment must pass.")
+      .optional("output", &Deck::output, output_rule(), "What is written, and where.")
+      .optional("petsc", &Deck::petsc, map_of("PETSc option without its dash", raw_text("value; empty for a flag")),
+                "PETSc options; those of the command line win.")
+      .not_yet("inertia", "Leave the key out: this release solves quasi-static problems.");
+  return rule;
+}
+
+const Rule<Deck>& the_rule() {
+  static const Rule<Deck> rule = deck_rule();
+  return rule;
+}
+
+std::string file_text(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    throw UserError("'" + path + "' is a folder, not a deck. Give the .yaml file.");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    const bool exists = std::filesystem::exists(path, ignored);
+    throw UserError("the deck '" + path + "' cannot be read: " + (exists ? "no permission" : "there is no such file") +
+                    "." + (exists ? " Change its permissions." : nearest_file(path, {".yaml", ".yml"})));
+  }
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+} // namespace
+
+const Shape& deck_shape() { return *the_rule().shape; }
+
+Deck parse_deck(const std::string& text, const std::string& path, bool look_for_mesh) {
+  const auto root = parse_yaml(text, path);
+  Deck deck;
+  deck.path = path;
+  const std::filesystem::path file(path);
+  deck.folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  Reading reading;
+  the_rule().read(root, deck, reading);
+  check_deck(deck, root, reading);
+  if (look_for_mesh) check_mesh_file_exists(deck, root, reading);
+  reading.finish();
+  if (deck.output.directory.empty()) deck.output.directory = "results/" + file.stem().string();
+  return deck;
+}
+
+Deck read_deck(const std::string& path) { return parse_deck(file_text(path), path, true); }
+
+Deck read_deck(MPI_Comm comm, const std::string& path) {
+  std::string text;
+  on_root(comm, [&] { text = file_text(path); });
+  auto size = static_cast<unsigned long>(text.size());
+  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG, 0, comm);
+  text.resize(size);
+  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, comm);
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  Deck deck;
+  together(comm, [&] { deck = parse_deck(text, path, rank == 0); });
+  return deck;
+}
+
+} // namespace amontons

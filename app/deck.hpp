@@ -1,0 +1,165 @@
+// What a deck says, as plain data. Declared (keys, types, units, ranges, sentences) in deck.cpp with the vocabulary of
+// lib/deck; everything downstream reads these structs and never YAML.
+#pragma once
+
+#include "base/expression.hpp"
+#include "deck/located.hpp"
+#include "math/space.hpp"
+
+#include <array>
+#include <map>
+#include <mpi.h>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace amontons {
+
+struct MeshDeck {
+  Located<std::string> file; // relative to the deck's folder
+  std::map<std::string, double> parameters;
+  std::optional<int> order;
+  int refine = 0;
+};
+
+enum class Kinematics { Small };
+
+struct ElasticDeck {
+  double young = 0.0;   // E
+  double poisson = 0.0; // nu
+};
+struct MaterialDeck {
+  std::variant<ElasticDeck> law;
+  double density = 0.0; // rho, used by body_force expressions as the constant 'rho' only
+};
+
+/// Components that are absent are free (displacement) or zero (forces).
+using VectorDeck = std::array<std::optional<Expression>, 3>;
+
+struct BoundaryDeck {
+  Located<std::string> on; // physical group
+  VectorDeck displacement;
+  VectorDeck traction;                // force per reference area
+  std::optional<Expression> pressure; // positive pushes into the body
+  VectorDeck resultant;               // total force on the group, which moves as one in that direction
+};
+
+/// Rigid master shapes; `displacement` moves the shape. Normals point out of the rigid body, towards the deformable
+/// one.
+struct PlaneDeck {
+  std::vector<double> point, normal;
+  VectorDeck displacement;
+};
+/// A ball; with `inside: true` a cavity. In plane and axisymmetric space a circle (centre on the axis there).
+struct SphereDeck {
+  std::vector<double> centre;
+  double radius = 0.0;
+  VectorDeck displacement;
+};
+/// Infinite cylinder; in 2D (no axis) a circle like the sphere.
+struct CylinderDeck {
+  std::vector<double> centre, axis;
+  double radius = 0.0;
+  VectorDeck displacement;
+};
+using MasterDeck = std::variant<Located<std::string>, PlaneDeck, SphereDeck, CylinderDeck>;
+
+struct PenaltyDeck {
+  double alpha = 100.0;
+};
+struct UzawaDeck {
+  double alpha = 10.0;
+  double tolerance = 1e-8; // relative change of the multipliers at which the outer loop stops
+  int max_iterations = 100;
+};
+struct SemismoothDeck {
+  double alpha = 1.0;
+};
+using EnforceDeck = std::variant<SemismoothDeck, UzawaDeck, PenaltyDeck>;
+
+struct ClosestPointDeck {};
+struct SlaveNormalDeck {};
+struct FacetIntegrationDeck {
+  int order = 4; // polynomial degree integrated exactly on a slave facet
+};
+
+struct ContactDeck {
+  Located<std::string> name;
+  Located<std::string> slave;
+  Located<MasterDeck> master;
+  EnforceDeck enforce;
+  std::variant<ClosestPointDeck, SlaveNormalDeck> projection;
+  std::variant<FacetIntegrationDeck> integration;
+  std::optional<double> search_distance; // absent: a tenth of the diagonal of the smaller surface's box
+};
+
+struct AutoIncrements {
+  double first = 0.1;     // fraction of the step
+  double smallest = 1e-4; // fraction of the step below which the run gives up
+  double largest = 1.0;
+  int target_iterations = 8; // Newton iterations at which the increment is kept; fewer: grow, more: shrink
+};
+using IncrementsDeck = std::variant<int, AutoIncrements>;
+
+struct StepDeck {
+  Located<std::string> name;
+  double to = 0.0;
+  IncrementsDeck increments = 1;
+};
+
+/// Tolerances of the certificate (DESIGN: may be changed, never switched off).
+struct CertificateDeck {
+  double penetration = 0.05;     // largest penetration / local facet size
+  double tension = 1e-2;         // largest tensile contact traction / largest pressure
+  double complementarity = 1e-2; // sum |pressure| |gap| / (total force x facet size)
+  double balance = 1e-6;         // force and moment out of balance / force scale
+  double energy = 1e-6;          // violation of the energy bounds / external work
+  double volume_ratio = 0.0;     // smallest det F allowed
+};
+
+struct OutputDeck {
+  std::string directory; // default: results/<deck name>
+  int every = 1;
+  std::vector<Located<std::string>> fields = {std::string("displacement"), std::string("stress"),
+                                              std::string("contact")};
+};
+
+struct Deck {
+  std::string path;   // of the YAML file
+  std::string folder; // that it is in
+  std::string title;
+  std::map<std::string, double> constants;
+  MeshDeck mesh;
+  Space space = Space::Solid;
+  Kinematics kinematics = Kinematics::Small;
+  std::map<std::string, Located<MaterialDeck>> materials;
+  std::map<std::string, Located<std::string>> bodies; // body group -> material name
+  std::vector<BoundaryDeck> boundary;
+  std::map<std::string, Located<VectorDeck>> body_force;
+  std::vector<ContactDeck> contact;
+  std::vector<StepDeck> steps;
+  CertificateDeck certificate;
+  OutputDeck output;
+  std::map<std::string, std::string> petsc; // option name without dash -> value
+
+  /// 2 or 3.
+  int dim() const { return space_dim(space); }
+};
+
+struct Shape;
+
+/// What a deck may say: for the schema and the manual pages.
+const Shape& deck_shape();
+
+/// The deck in `text`, checked in itself; `path` is where it came from. Throws UserError with every fault, each as
+/// "file:line:column: ...". With `look_for_mesh`, a mesh file that does not exist is a fault too.
+Deck parse_deck(const std::string& text, const std::string& path, bool look_for_mesh);
+
+/// Reads the file and parses it. Serial.
+Deck read_deck(const std::string& path);
+
+/// The same on all ranks; only rank 0 touches the file. Collective.
+Deck read_deck(MPI_Comm comm, const std::string& path);
+
+} // namespace amontons

@@ -1,0 +1,304 @@
+#include "deck_checks.hpp"
+
+#include "base/error.hpp"
+#include "deck/shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+namespace amontons {
+
+namespace {
+
+const std::array<std::string, 3> axes = {"x", "y", "z"};
+
+/// The deck under check, with what the checks need to say where.
+struct Check {
+  const Deck& deck;
+  const DeckNode& root;
+  Reading& reading;
+
+  /// Is this part of the deck free of faults (or absent)?
+  bool sound(const std::string& key) const {
+    const auto* node = root.find(key);
+    return !node || !reading.has_fault(*node);
+  }
+  bool space_is_known() const { return root.find("space") && sound("space"); }
+  void fail(std::initializer_list<DeckStep> steps, const std::string& message) const {
+    reading.fail(place_of(root, steps), message);
+  }
+};
+
+std::string list_path(const std::string& key, std::size_t i) { return key + "[" + std::to_string(i) + "]"; }
+
+std::string space_name(const Deck& deck) {
+  switch (deck.space) {
+  case Space::PlaneStrain:
+    return "plane_strain";
+  case Space::PlaneStress:
+    return "plane_stress";
+  case Space::Axisymmetric:
+    return "axisymmetric";
+  case Space::Solid:
+    return "solid";
+  }
+  return "";
+}
+
+bool is_empty(const VectorDeck& vector) {
+  return std::none_of(vector.begin(), vector.end(), [](const auto& component) { return component.has_value(); });
+}
+
+void check_mesh(const Check& check) {
+  const auto& mesh = check.deck.mesh;
+  if (!check.sound("mesh") || mesh.file.value.empty()) return;
+  const auto ending = std::filesystem::path(mesh.file.value).extension().string();
+  if (ending != ".geo" && ending != ".msh")
+    check.fail({"mesh", "file"}, "mesh.file: '" + mesh.file.value +
+                                     "' is neither a .geo nor a .msh file. Convert the " +
+                                     "mesh with gmsh, for example `gmsh -save -format msh22 -o out.msh ...`.");
+  if (ending == ".msh" && !mesh.parameters.empty())
+    check.fail({"mesh", "parameters"}, "mesh.parameters: a .msh file is read as it is and has no parameters. Remove " +
+                                           std::string("them, or name the .geo file that the mesh was made from."));
+}
+
+void check_bodies(const Check& check) {
+  const auto& [deck, root, reading] = check;
+  std::vector<std::string> names;
+  for (const auto& [name, material] : deck.materials)
+    names.push_back(name);
+  for (const auto& [body, material] : deck.bodies) {
+    if (names.empty() || material.value.empty() || deck.materials.contains(material.value)) continue;
+    const auto match = nearest_match(material.value, names);
+    reading.fail(material.place, "bodies." + body + ": there is no material '" + material.value + "'." +
+                                     (match.empty() ? "" : " Did you mean '" + match + "'?") +
+                                     " Materials of this deck: " + join_names(names) + ".");
+  }
+  std::vector<std::string> bodies;
+  for (const auto& [body, material] : deck.bodies)
+    bodies.push_back(body);
+  for (const auto& [body, force] : deck.body_force) {
+    if (is_empty(force.value) && check.sound("body_force"))
+      check.fail({"body_force", body}, "body_force." + body + " has no component. Give x, y or z, or remove it.");
+    if (bodies.empty() || deck.bodies.contains(body)) continue;
+    const auto match = nearest_match(body, bodies);
+    check.fail({"body_force", body}, "body_force: '" + body + "' is not one of the deck's bodies." +
+                                         (match.empty() ? "" : " Did you mean '" + match + "'?") +
+                                         " Bodies: " + join_names(bodies) + ".");
+  }
+}
+
+/// Components that the space does not have.
+void check_space_of_vectors(const Check& check) {
+  const auto& [deck, root, reading] = check;
+  if (!check.space_is_known() || deck.dim() == 3) return;
+  const auto message = [&deck](const std::string& path) {
+    return path + ": there is no z with space: " + space_name(deck) + ". Remove it, or set space: solid.";
+  };
+  for (std::size_t i = 0; i < deck.boundary.size(); ++i) {
+    const auto& entry = deck.boundary[i];
+    const std::pair<std::string, const VectorDeck*> vectors[] = {
+        {"displacement", &entry.displacement}, {"traction", &entry.traction}, {"resultant", &entry.resultant}};
+    for (const auto& [key, vector] : vectors)
+      if ((*vector)[2]) check.fail({"boundary", i, key, "z"}, message(list_path("boundary", i) + "." + key + ".z"));
+    if (deck.space == Space::Axisymmetric && entry.resultant[0])
+      check.fail({"boundary", i, "resultant", "x"},
+                 list_path("boundary", i) + ".resultant.x: radial forces have no resultant when axisymmetric. Use " +
+                     "`traction: {x: ...}` or `pressure`.");
+  }
+  for (const auto& [body, force] : deck.body_force)
+    if (force.value[2]) check.fail({"body_force", body, "z"}, message("body_force." + body + ".z"));
+}
+
+/// A component of a group may be prescribed once, and either as a displacement or as a resultant.
+void check_boundary(const Check& check) {
+  const auto& [deck, root, reading] = check;
+  if (!check.sound("boundary")) return;
+  struct First {
+    std::size_t entry;
+    std::string key;
+  };
+  std::map<std::pair<std::string, std::size_t>, First> taken;
+  for (std::size_t i = 0; i < deck.boundary.size(); ++i) {
+    const auto& entry = deck.boundary[i];
+    const auto path = list_path("boundary", i);
+    if (is_empty(entry.displacement) && is_empty(entry.traction) && is_empty(entry.resultant) && !entry.pressure)
+      check.fail({"boundary", i}, path + " prescribes nothing on '" + entry.on.value + "'. Give a component of " +
+                                      "displacement, traction or resultant, or a pressure, or remove the entry.");
+    const std::pair<std::string, const VectorDeck*> vectors[] = {{"displacement", &entry.displacement},
+                                                                 {"resultant", &entry.resultant}};
+    for (const auto& [key, vector] : vectors)
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (!(*vector)[c]) continue;
+        const auto [at, fresh] = taken.try_emplace({entry.on.value, c}, First{i, key});
+        if (fresh) continue;
+        const auto& first = at->second;
+        check.fail({"boundary", i, key, axes[c]}, path + "." + key + "." + axes[c] + ": '" + entry.on.value +
+                                                      "' already has a " + first.key + " in " + axes[c] + " from " +
+                                                      list_path("boundary", first.entry) + ". Keep one of the two.");
+      }
+  }
+}
+
+bool is_zero(const std::vector<double>& vector) {
+  return std::all_of(vector.begin(), vector.end(), [](double component) { return component == 0.0; });
+}
+
+/// Checks of one rigid shape, written under `tag` of contact[i].master.
+struct ShapeCheck {
+  const Check& check;
+  std::size_t i;
+  std::string tag;
+
+  void fail(const std::string& key, const std::string& message) const {
+    check.fail({"contact", i, "master", tag, key}, list_path("contact", i) + ".master." + tag + "." + key + message);
+  }
+  void length(const std::string& key, const std::vector<double>& vector) const {
+    if (!check.space_is_known() || vector.size() == std::size_t(check.deck.dim())) return;
+    fail(key, " must have " + std::to_string(check.deck.dim()) + " components with space: " + space_name(check.deck) +
+                  ", but has " + std::to_string(vector.size()) + ".");
+  }
+  void direction(const std::string& key, const std::vector<double>& vector) const {
+    length(key, vector);
+    if (is_zero(vector)) fail(key, " is zero and has no direction. Give a vector that is not zero.");
+  }
+  void displacement(const VectorDeck& vector) const {
+    if (!check.space_is_known()) return;
+    if (check.deck.dim() == 2 && vector[2])
+      fail("displacement", ": there is no z with space: " + space_name(check.deck) + ". Remove it.");
+    if (check.deck.space == Space::Axisymmetric && vector[0])
+      fail("displacement", ": a rigid shape cannot move along the radius when axisymmetric. Remove x.");
+  }
+
+  void operator()(const Located<std::string>&) const {}
+  void operator()(const PlaneDeck& plane) const {
+    length("point", plane.point);
+    direction("normal", plane.normal);
+    displacement(plane.displacement);
+  }
+  void operator()(const SphereDeck& sphere) const {
+    length("centre", sphere.centre);
+    displacement(sphere.displacement);
+    if (check.space_is_known() && check.deck.space == Space::Axisymmetric && sphere.centre[0] != 0.0)
+      fail("centre", " must be on the axis, x = 0, when axisymmetric.");
+  }
+  void operator()(const CylinderDeck& cylinder) const {
+    length("centre", cylinder.centre);
+    displacement(cylinder.displacement);
+    if (!check.space_is_known()) return;
+    if (check.deck.dim() == 3 && cylinder.axis.empty())
+      fail("axis", " is missing; with space: solid a cylinder needs it. Add its direction, for example [0, 0, 1].");
+    if (check.deck.dim() == 3 && !cylinder.axis.empty()) direction("axis", cylinder.axis);
+    if (check.deck.dim() == 2 && !cylinder.axis.empty())
+      fail("axis", ": in 2D a cylinder is a disc whose axis points out of the plane. Remove the key.");
+    if (check.deck.space == Space::Axisymmetric)
+      fail("centre", ": there is no rigid cylinder with space: axisymmetric. Use a sphere or a plane.");
+  }
+};
+
+const std::string shape_tags[] = {"", "plane", "sphere", "cylinder"}; // in the order of MasterDeck
+
+void check_contact(const Check& check) {
+  const auto& [deck, root, reading] = check;
+  if (!check.sound("contact")) return;
+  std::map<std::string, std::size_t> names;
+  std::map<std::set<std::string>, std::size_t> pairs;
+  for (std::size_t i = 0; i < deck.contact.size(); ++i) {
+    const auto& contact = deck.contact[i];
+    const auto path = list_path("contact", i);
+    const auto [same, fresh] = names.try_emplace(contact.name.value, i);
+    if (!fresh)
+      reading.fail(contact.name.place, path + ".name: '" + contact.name.value + "' is also the name of " +
+                                           list_path("contact", same->second) + ". Give each pair its own name.");
+    std::visit(ShapeCheck{check, i, shape_tags[contact.master.value.index()]}, contact.master.value);
+    const auto* master = std::get_if<Located<std::string>>(&contact.master.value);
+    if (!master) continue;
+    if (master->value == contact.slave.value) {
+      reading.fail(contact.master.place, path + ": slave and master are the same surface '" + master->value +
+                                             "', and self contact is not in this release. Split the surface into two " +
+                                             "physical groups.");
+      continue;
+    }
+    const auto [pair, new_pair] = pairs.try_emplace({contact.slave.value, master->value}, i);
+    if (!new_pair)
+      check.fail({"contact", i}, path + ": the surfaces '" + contact.slave.value + "' and '" + master->value +
+                                     "' are a pair already in " + list_path("contact", pair->second) +
+                                     ". Declare each pair once.");
+  }
+}
+
+void check_steps(const Check& check) {
+  const auto& steps = check.deck.steps;
+  if (!check.sound("steps")) return;
+  std::map<std::string, std::size_t> names;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto [same, fresh] = names.try_emplace(steps[i].name.value, i);
+    if (!fresh)
+      check.reading.fail(steps[i].name.place, list_path("steps", i) + ".name: '" + steps[i].name.value +
+                                                  "' is also the name of " + list_path("steps", same->second) +
+                                                  ". Give each step its own name.");
+    if (i > 0 && steps[i].to <= steps[i - 1].to)
+      check.fail({"steps", i, "to"}, list_path("steps", i) + ".to must be later than the end of the step before, " +
+                                         number_text(steps[i - 1].to) + ", but is " + number_text(steps[i].to) + ".");
+  }
+}
+
+void check_output(const Check& check) {
+  std::set<std::string> seen;
+  for (const auto& field : check.deck.output.fields)
+    if (!field.value.empty() && !seen.insert(field.value).second)
+      check.reading.fail(field.place, "output.fields: '" + field.value + "' is listed twice. Keep one.");
+}
+
+void check_petsc(const Check& check) {
+  for (const auto& [option, value] : check.deck.petsc)
+    if (option.empty() || option[0] == '-' || option.find(' ') != std::string::npos)
+      check.fail({"petsc", option}, "petsc: '" + option + "' is not the name of an option. Write it as one word " +
+                                        "without its dash, for example `snes_rtol: 1e-9`.");
+}
+
+} // namespace
+
+std::string nearest_file(const std::string& path, const std::vector<std::string>& endings) {
+  const std::filesystem::path wanted(path);
+  const auto folder = wanted.has_parent_path() ? wanted.parent_path() : std::filesystem::path(".");
+  std::error_code failed;
+  std::filesystem::directory_iterator files(folder, failed);
+  if (failed) return " There is no folder '" + folder.string() + "' either: check the path.";
+  std::vector<std::string> names;
+  for (const auto& file : files)
+    if (std::find(endings.begin(), endings.end(), file.path().extension().string()) != endings.end())
+      names.push_back(file.path().filename().string());
+  std::sort(names.begin(), names.end());
+  const auto match = nearest_match(wanted.filename().string(), names);
+  if (!match.empty()) return " Did you mean '" + match + "'?";
+  if (names.empty() || names.size() > 12) return " Check the path.";
+  return " Files of that kind in its folder: " + join_names(names) + ".";
+}
+
+void check_deck(const Deck& deck, const DeckNode& root, Reading& reading) {
+  const Check check{deck, root, reading};
+  check_mesh(check);
+  check_bodies(check);
+  check_space_of_vectors(check);
+  check_boundary(check);
+  check_contact(check);
+  check_steps(check);
+  check_output(check);
+  check_petsc(check);
+}
+
+void check_mesh_file_exists(const Deck& deck, const DeckNode& root, Reading& reading) {
+  const auto* mesh = root.find("mesh");
+  if (!mesh || reading.has_fault(*mesh) || deck.mesh.file.value.empty()) return;
+  const auto path = (std::filesystem::path(deck.folder) / deck.mesh.file.value).string();
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) return;
+  reading.fail(place_of(root, {"mesh", "file"}), "mesh.file: there is no file '" + path + "'." +
+                                                     nearest_file(path, {".geo", ".msh"}) +
+                                                     " The name counts from the deck's folder.");
+}
+
+} // namespace amontons

@@ -1,0 +1,145 @@
+// External forces e are what balances the bulk and the contact forms: e = bulk + contact = residual without the loads'
+// part. At supports they are the reactions, elsewhere the applied loads.
+#include "ledger.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace amontons {
+
+Ledger::Ledger(Scene& scene)
+    : scene_(scene), external_(scene.layout->new_vector()), external_old_(scene.layout->new_vector()),
+      unknowns_old_(scene.layout->new_vector()), work_(scene.layout->new_vector()),
+      rigid_force_old_(scene.contacts.size()), rigid_shift_old_(scene.contacts.size()) {
+  for (const auto& condition : scene.problem->prescribed())
+    if (std::none_of(reactions_.begin(), reactions_.end(),
+                     [&](const auto& known) { return known.group == condition.group; }))
+      reactions_.push_back({.group = condition.group});
+}
+
+void Ledger::find_external_forces(Vec unknowns) {
+  AMT_PETSC(VecCopy(scene_.problem->raw_residual(), external_));
+  if (!scene_.loads) return;
+  AMT_PETSC(VecSet(work_, 0.0));
+  Residual loads(*scene_.layout, work_);
+  scene_.loads->add_residual(scene_.problem->state_at(unknowns), loads);
+  loads.finish();
+  AMT_PETSC(VecAXPY(external_, -1.0, work_));
+}
+
+/// This rank's parts of loads and reactions by node. The equation of a tied group holds its total force; what its nodes
+/// get from the grip one by one is what the bulk takes up there.
+std::vector<double> Ledger::nodal_external_forces(Vec unknowns) {
+  const auto& layout = *scene_.layout;
+  const auto& mesh = scene_.mesh;
+  const int d = mesh.dim;
+  const auto state = scene_.problem->state_at(unknowns);
+  std::vector<double> forces(state.displacement.size(), 0.0);
+  if (scene_.loads) forces = scene_.loads->nodal_forces(state.time);
+  {
+    VecReader raw(scene_.problem->raw_residual());
+    for (PetscInt local = 0; local < mesh.num_owned * d; ++local)
+      if (scene_.problem->is_prescribed(layout.first_equation() + local)) forces[local] += raw[local];
+  }
+  if (layout.tied().empty()) return forces;
+  AMT_PETSC(VecSet(work_, 0.0));
+  Residual internal(layout, work_);
+  scene_.bulk->add_residual(state, internal);
+  for (const auto& [group, component] : layout.tied())
+    for (const auto node : mesh.node_groups.at(group)) {
+      const std::size_t at = std::size_t(node) * d + component;
+      forces[at] = internal.nodal()[at];
+    }
+  return forces;
+}
+
+void Ledger::collect_reactions() {
+  const auto& mesh = scene_.mesh;
+  VecReader raw(scene_.problem->raw_residual());
+  for (auto& reaction : reactions_) {
+    reaction.force = {};
+    for (const auto node : mesh.node_groups.at(reaction.group))
+      if (node < mesh.num_owned)
+        for (int c = 0; c < mesh.dim; ++c) {
+          const PetscInt equation = scene_.layout->equation(node, c);
+          const PetscInt local = equation - scene_.layout->first_equation();
+          if (local == node * mesh.dim + c && scene_.problem->is_prescribed(equation)) reaction.force[c] += raw[local];
+        }
+    MPI_Allreduce(MPI_IN_PLACE, reaction.force.data(), 3, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  }
+}
+
+void Ledger::collect_tied_displacements(Vec unknowns) {
+  const auto& layout = *scene_.layout;
+  tied_displacements_.assign(layout.tied().size(), 0.0);
+  {
+    VecReader u(unknowns);
+    for (std::size_t i = 0; i < tied_displacements_.size(); ++i) {
+      const PetscInt local = layout.tied_equation(i) - layout.first_equation();
+      if (local >= 0 && local < layout.num_owned()) tied_displacements_[i] = u[local];
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, tied_displacements_.data(), static_cast<int>(tied_displacements_.size()), MPI_DOUBLE,
+                MPI_SUM, scene_.mesh.comm);
+}
+
+void Ledger::accept(Vec unknowns) {
+  const auto& problem = *scene_.problem;
+  find_external_forces(unknowns);
+  collect_reactions();
+  collect_tied_displacements(unknowns);
+  stored_energy_ = scene_.problem->stored_energy(unknowns);
+
+  double here[4] = {}; // work, its uncertainty, e·u, Σ|e·u|
+  {
+    VecReader e(external_), e_old(external_old_), u(unknowns), u_old(unknowns_old_);
+    const PetscInt displacements = scene_.mesh.num_owned * scene_.mesh.dim; // multipliers do no work of their own
+    for (PetscInt i = 0; i < displacements; ++i) {
+      const double step = u[i] - u_old[i];
+      here[0] += 0.5 * (e[i] + e_old[i]) * step;
+      here[1] += 0.5 * std::abs((e[i] - e_old[i]) * step);
+      here[2] += e[i] * u[i];
+      here[3] += std::abs(e[i] * u[i]);
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, here, 4, MPI_DOUBLE, MPI_SUM, problem.comm());
+  double contact_work = 0.0; // ∫ σ (g − g0)
+  const auto state = scene_.problem->state_at(unknowns);
+  for (std::size_t i = 0; i < scene_.contacts.size(); ++i) {
+    auto& contact = *scene_.contacts[i];
+    contact_work += contact.work_of_displacement(state);
+    if (!std::holds_alternative<RigidMaster>(contact.pair().master)) continue;
+    const auto force = contact.totals(state).force;
+    const auto shift = contact.rigid_shift();
+    for (int c = 0; c < 3; ++c) {
+      const double step = shift[c] - rigid_shift_old_[i][c];
+      here[0] += 0.5 * (force[c] + rigid_force_old_[i][c]) * step;
+      here[1] += 0.5 * std::abs((force[c] - rigid_force_old_[i][c]) * step);
+    }
+    rigid_force_old_[i] = force;
+    rigid_shift_old_[i] = shift;
+  }
+  external_work_ += here[0];
+  work_uncertainty_ += here[1];
+  const double bulk_energy = scene_.bulk_energy(unknowns);
+  virtual_work_defect_ = here[2] - contact_work - 2.0 * bulk_energy;
+  virtual_work_scale_ = here[3] + 2.0 * bulk_energy;
+  AMT_PETSC(VecCopy(external_, external_old_));
+  AMT_PETSC(VecCopy(unknowns, unknowns_old_));
+}
+
+void Ledger::restore(Vec unknowns, double work, double uncertainty) {
+  find_external_forces(unknowns);
+  external_work_ = work;
+  work_uncertainty_ = uncertainty;
+  stored_energy_ = scene_.problem->stored_energy(unknowns);
+  const auto state = scene_.problem->state_at(unknowns);
+  for (std::size_t i = 0; i < scene_.contacts.size(); ++i) {
+    rigid_force_old_[i] = scene_.contacts[i]->totals(state).force;
+    rigid_shift_old_[i] = scene_.contacts[i]->rigid_shift();
+  }
+  AMT_PETSC(VecCopy(external_, external_old_));
+  AMT_PETSC(VecCopy(unknowns, unknowns_old_));
+}
+
+} // namespace amontons

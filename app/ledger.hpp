@@ -1,0 +1,58 @@
+// The book-keeping of forces and energies over accepted increments: reactions, external work, its bounds.
+#pragma once
+
+#include "scene.hpp"
+
+#include <array>
+#include <vector>
+
+namespace amontons {
+
+/// Force on a group by its supports, and its mean displacement where it moves as one.
+struct GroupReaction {
+  std::string group;
+  std::array<double, 3> force{};
+};
+
+class Ledger {
+ public:
+  explicit Ledger(Scene& scene);
+
+  /// Takes the accepted state into the books; call before Problem::commit, after a residual at `unknowns`. Collective.
+  void accept(Vec unknowns);
+
+  /// ∫ F · du by the trapezoidal rule over the accepted increments: supports, loads and moving rigid masters.
+  double external_work() const { return external_work_; }
+  /// Σ ½ |ΔF · Δu|: how far the trapezoidal rule can be off where forces grow monotonically.
+  double work_uncertainty() const { return work_uncertainty_; }
+  double stored_energy() const { return stored_energy_; }
+  /// e · u − ∫ σ (g − g0) − 2 U at the state: zero for a linear elastic body in equilibrium; and its scale |e · u| + 2
+  /// U.
+  double virtual_work_defect() const { return virtual_work_defect_; }
+  double virtual_work_scale() const { return virtual_work_scale_; }
+  /// Applied loads and support reactions by node: num_local x dim, this rank's parts. Collective.
+  std::vector<double> nodal_external_forces(Vec unknowns);
+  /// One entry per group with a prescribed displacement, in the order of the deck.
+  const std::vector<GroupReaction>& reactions() const { return reactions_; }
+
+  /// Displacement of each tied group of the layout, in its direction.
+  const std::vector<double>& tied_displacements() const { return tied_displacements_; }
+
+  /// Starts the books from a checkpoint's state; call after a residual at `unknowns`. Collective.
+  void restore(Vec unknowns, double work, double uncertainty);
+
+ private:
+  void find_external_forces(Vec unknowns);
+  void collect_reactions();
+  void collect_tied_displacements(Vec unknowns);
+
+  Scene& scene_;
+  VecHandle external_, external_old_, unknowns_old_, work_;
+  std::vector<std::array<double, 3>> rigid_force_old_, rigid_shift_old_;
+  double external_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0;
+  double virtual_work_defect_ = 0.0, virtual_work_scale_ = 0.0;
+  std::vector<GroupReaction> reactions_;
+  std::vector<double> tied_displacements_;
+};
+
+} // namespace amontons

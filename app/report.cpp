@@ -1,0 +1,229 @@
+#include "report.hpp"
+
+#include "base/log.hpp"
+#include "base/timer.hpp"
+#include "math/tensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace amontons {
+
+namespace {
+
+const char* const axes[] = {"x", "y", "z"};
+
+std::string enforcement_name(const ContactPair& pair) {
+  if (std::holds_alternative<Penalty>(pair.enforcement)) return "penalty";
+  return std::holds_alternative<Uzawa>(pair.enforcement) ? "uzawa" : "semismooth";
+}
+
+bool wants_field(const Scene& scene, const std::string& name) {
+  const auto& fields = scene.deck.output.fields;
+  return std::any_of(fields.begin(), fields.end(), [&](const auto& field) { return field.value == name; });
+}
+
+std::string multiplier_name(const ContactForm& contact) { return "multiplier:" + contact.pair().name; }
+
+} // namespace
+
+std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledger) {
+  std::vector<std::string> columns = {"time"};
+  const int d = scene.mesh.dim;
+  for (const auto& reaction : ledger.reactions())
+    for (int c = 0; c < d; ++c)
+      columns.push_back("reaction_" + reaction.group + "_" + axes[c]);
+  for (const auto& tied : scene.layout->tied())
+    columns.push_back("displacement_" + tied.group + "_" + axes[tied.component]);
+  for (const auto* contact : scene.contacts) {
+    const auto prefix = "contact_" + contact->pair().name + "_";
+    for (int c = 0; c < d; ++c)
+      columns.push_back(prefix + "force_" + axes[c]);
+    for (const char* quantity : {"area", "max_pressure", "penetration"})
+      columns.push_back(prefix + quantity);
+  }
+  for (const char* quantity :
+       {"energy_stored", "energy_external_work", "newton", "linear", "outer", "residual", "certified"})
+    columns.emplace_back(quantity);
+  return columns;
+}
+
+std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::vector<ContactTotals>& totals,
+                                const IncrementReport& report) {
+  std::vector<double> row = {report.time};
+  const int d = scene.mesh.dim;
+  for (const auto& reaction : ledger.reactions())
+    row.insert(row.end(), reaction.force.begin(), reaction.force.begin() + d);
+  for (std::size_t i = 0; i < scene.layout->tied().size(); ++i)
+    row.push_back(ledger.tied_displacements()[i]);
+  for (const auto& pair : totals) {
+    row.insert(row.end(), pair.force.begin(), pair.force.begin() + d);
+    row.insert(row.end(), {pair.area, pair.max_pressure, pair.largest_penetration});
+  }
+  row.insert(row.end(), {ledger.stored_energy(), ledger.external_work(), double(report.outcome.newton),
+                         double(report.outcome.linear), double(report.outcome.outer), report.outcome.residual,
+                         report.certified ? 1.0 : 0.0});
+  return row;
+}
+
+void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::vector<ContactSamples>& samples) {
+  const auto state = scene.problem->state_at(unknowns);
+  const std::vector<double> displacement(state.displacement.begin(), state.displacement.end());
+  FieldsStep step;
+  step.time = state.time;
+  if (wants_field(scene, "displacement"))
+    step.nodal.push_back({.name = "displacement", .kind = FieldKind::Vector, .values = displacement});
+  NodalStress recovered;
+  std::vector<double> mises;
+  if (wants_field(scene, "stress")) {
+    recovered = scene.bulk->nodal_stress(displacement);
+    const std::size_t components = scene.mesh.dim == 2 ? strain_size<2> : strain_size<3>;
+    for (std::size_t at = 0; at < recovered.stress.size(); at += components)
+      mises.push_back(von_mises(std::span(recovered.stress).subspan(at, components)));
+    step.nodal.push_back({.name = "stress", .kind = FieldKind::SymmetricTensor, .values = recovered.stress});
+    step.nodal.push_back({.name = "strain", .kind = FieldKind::SymmetricTensor, .values = recovered.strain});
+    step.nodal.push_back({.name = "von_mises", .kind = FieldKind::Scalar, .values = mises});
+  }
+  if (wants_field(scene, "contact"))
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto& pair = scene.contacts[i]->pair();
+      const auto& sample = samples[i];
+      step.surfaces.push_back(
+          {.name = pair.name,
+           .surface = pair.slave,
+           .fields = {{.name = "pressure", .nodes = sample.nodes, .values = sample.nodal_pressure}}});
+      PointFields points{.name = pair.name, .places = sample.place, .fields = {}};
+      std::vector<double> gap, status, normals;
+      for (std::size_t q = 0; q < sample.size(); ++q) {
+        gap.push_back(sample.gap[q] < 1e299 ? sample.gap[q] : std::numeric_limits<double>::quiet_NaN());
+        status.push_back(static_cast<double>(sample.status[q]));
+        normals.insert(normals.end(), sample.normal[q].begin(), sample.normal[q].end());
+      }
+      points.fields = {{.name = "pressure", .values = sample.pressure},
+                       {.name = "gap", .values = std::move(gap)},
+                       {.name = "status", .values = std::move(status)},
+                       {.name = "weight", .values = sample.weight},
+                       {.name = "normal", .components = 3, .values = std::move(normals)}};
+      step.points.push_back(std::move(points));
+    }
+  writer.write(step);
+}
+
+std::string run_identity(const Scene& scene) {
+  std::string identity;
+  for (const auto& [body, material] : scene.deck.bodies)
+    identity += body + "=" + material.value + ";";
+  for (const auto& law : scene.mesh.bodies)
+    identity += law + ";";
+  for (std::size_t b = 0; b < scene.mesh.bodies.size(); ++b)
+    identity += formatted("%.17g;", scene.bulk->law(static_cast<std::int32_t>(b)).stiffness());
+  for (const auto* contact : scene.contacts)
+    identity += contact->pair().name + ":" + contact->pair().slave + ";";
+  return identity;
+}
+
+Checkpoint make_checkpoint(const Scene& scene, const Ledger& ledger, Vec unknowns) {
+  const auto state = scene.problem->state_at(unknowns);
+  Checkpoint checkpoint;
+  checkpoint.time = state.time;
+  checkpoint.nodal["displacement"] = {scene.mesh.dim, {state.displacement.begin(), state.displacement.end()}};
+  for (const auto* contact : scene.contacts) {
+    if (std::holds_alternative<Penalty>(contact->pair().enforcement)) continue;
+    NodalArray multipliers{1, std::vector<double>(scene.mesh.num_local(), 0.0)};
+    for (std::size_t i = 0; i < contact->nodes().nodes.size(); ++i)
+      multipliers.values[contact->nodes().nodes[i]] = contact->multipliers()[i];
+    checkpoint.nodal[multiplier_name(*contact)] = std::move(multipliers);
+  }
+  checkpoint.global["work"] = {ledger.external_work(), ledger.work_uncertainty()};
+  return checkpoint;
+}
+
+void restore_unknowns(Scene& scene, const Checkpoint& checkpoint, Vec unknowns) {
+  const auto& layout = *scene.layout;
+  const int d = layout.dim();
+  const auto& displacement = checkpoint.nodal.at("displacement").values;
+  VecArray values(unknowns);
+  const auto put = [&](PetscInt equation, double value) {
+    const PetscInt local = equation - layout.first_equation();
+    if (local >= 0 && local < layout.num_owned()) values[local] = value;
+  };
+  for (std::int32_t node = 0; node < scene.mesh.num_local(); ++node)
+    for (int c = 0; c < d; ++c)
+      put(layout.equation(node, c), displacement[std::size_t(node) * d + c]);
+  for (auto* contact : scene.contacts) {
+    if (std::holds_alternative<Penalty>(contact->pair().enforcement)) continue;
+    const auto& stored = checkpoint.nodal.at(multiplier_name(*contact)).values;
+    std::vector<double> multipliers;
+    for (const auto node : contact->nodes().nodes) {
+      multipliers.push_back(stored[node]);
+      if (const auto* unknown = std::get_if<Semismooth>(&contact->pair().enforcement))
+        put(layout.extra_equation(unknown->field, node), stored[node] / contact->multiplier_scale());
+    }
+    contact->hold_multipliers(std::move(multipliers));
+  }
+}
+
+nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds) {
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  nlohmann::ordered_json phases;
+  double timed = 0.0;
+  // Ranks go through the same phases; one that a rank never entered counts as zero there.
+  for (const char* phase : {"mesh", "set up", "search", "pattern", "bulk", "loads", "support", "contact", "matrix",
+                            "linear solver", "certificate", "output"}) {
+    const auto& seconds = PhaseTimer::of_run().seconds();
+    const auto found = seconds.find(phase);
+    double sum = found == seconds.end() ? 0.0 : found->second;
+    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, comm);
+    if (sum > 0.0) phases[phase] = sum / ranks;
+    timed += sum / ranks;
+  }
+  phases["rest"] = std::max(0.0, wall_seconds - timed);
+  double sums[2] = {cpu_seconds(), peak_memory()};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm);
+  return {{"wall_seconds", wall_seconds},
+          {"cpu_seconds", sums[0]},
+          {"peak_memory_bytes", sums[1]},
+          {"phase_seconds", phases}};
+}
+
+nlohmann::ordered_json describe_scene(const Scene& scene) {
+  const auto& mesh = scene.mesh;
+  std::int64_t cells = 0;
+  for (const auto& block : mesh.blocks)
+    cells += block.size();
+  MPI_Allreduce(MPI_IN_PLACE, &cells, 1, MPI_INT64_T, MPI_SUM, mesh.comm);
+  nlohmann::ordered_json pairs = nlohmann::ordered_json::array();
+  for (const auto* contact : scene.contacts) {
+    const auto& pair = contact->pair();
+    const auto* master = std::get_if<std::string>(&pair.master);
+    pairs.push_back({{"name", pair.name},
+                     {"slave", pair.slave},
+                     {"master", master ? *master : "rigid shape"},
+                     {"enforce", enforcement_name(pair)},
+                     {"alpha", pair.alpha},
+                     {"search_distance", pair.search_distance}});
+  }
+  nlohmann::ordered_json effects;
+  effects["contact"] = !scene.contacts.empty();
+  effects["friction"] = false;
+  effects["finite_kinematics"] = false;
+  effects["inertia"] = false;
+  effects["unknown_multipliers"] = scene.layout->num_extra() > 0;
+  effects["outer_loop"] = scene.multipliers != nullptr;
+  effects["loads"] = scene.loads != nullptr;
+  nlohmann::ordered_json json;
+  json["dim"] = mesh.dim;
+  json["order"] = mesh.order;
+  json["nodes"] = mesh.num_global;
+  json["cells"] = cells;
+  json["unknowns"] = {{"displacement", mesh.num_global * mesh.dim}, {"multipliers", scene.layout->num_extra()}};
+  json["effects"] = effects;
+  json["bodies_held_by_contact_alone"] = scene.floating;
+  json["contact"] = pairs;
+  return json;
+}
+
+} // namespace amontons

@@ -1,0 +1,43 @@
+// What a run tells about itself: rows of the history, fields, checkpoint, summary. Reads the scene, changes nothing.
+#pragma once
+
+#include "ledger.hpp"
+#include "output/checkpoint.hpp"
+#include "output/fields.hpp"
+#include "scene.hpp"
+#include "solve/newton.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace amontons {
+
+/// Numbers of a row of history.csv besides those that the scene knows.
+struct IncrementReport {
+  double time = 0.0;
+  SolveOutcome outcome;
+  bool certified = false;
+};
+
+std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledger);
+/// One number per column. Collective.
+std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::vector<ContactTotals>& totals,
+                                const IncrementReport& report);
+
+/// Writes the fields that the deck asks for. Collective.
+void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::vector<ContactSamples>& samples);
+
+/// All that must be the same for a restart to make sense, besides the mesh.
+std::string run_identity(const Scene& scene);
+/// Unknowns, multipliers and books as a checkpoint. Collective.
+Checkpoint make_checkpoint(const Scene& scene, const Ledger& ledger, Vec unknowns);
+/// Puts a checkpoint's values back into the unknowns and the held multipliers. Collective.
+void restore_unknowns(Scene& scene, const Checkpoint& checkpoint, Vec unknowns);
+
+/// Seconds per phase (mean over ranks), CPU seconds and peak memory (sums over ranks). Collective.
+nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds);
+/// Sizes, effects on and off, pairs and how they are enforced. Collective.
+nlohmann::ordered_json describe_scene(const Scene& scene);
+
+} // namespace amontons

@@ -1,0 +1,227 @@
+#include "scene.hpp"
+
+#include "base/timer.hpp"
+#include "form/support.hpp"
+#include "geometry/box_tree.hpp"
+#include "material/elastic.hpp"
+#include "validate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace amontons {
+
+namespace {
+
+template <class... Cases>
+struct Overloaded : Cases... {
+  using Cases::operator()...;
+};
+
+std::vector<BulkLawPtr> body_laws(const Deck& deck, const Mesh& mesh) {
+  std::vector<BulkLawPtr> laws;
+  for (const auto& body : mesh.bodies) {
+    const auto& material = deck.materials.at(deck.bodies.at(body).value).value;
+    laws.push_back(std::visit(Overloaded{[&](const ElasticDeck& elastic) {
+                                return make_law(Elastic{.young = elastic.young, .poisson = elastic.poisson},
+                                                deck.space);
+                              }},
+                              material.law));
+  }
+  return laws;
+}
+
+/// Diagonal of the box around a surface, over all ranks. Collective.
+double surface_diagonal(const Mesh& mesh, const std::string& name) {
+  Box box;
+  for (const auto node : mesh.node_groups.at(name))
+    box.include(mesh.position(node));
+  MPI_Allreduce(MPI_IN_PLACE, box.low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, box.high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
+  return box.diagonal();
+}
+
+/// Does the surface belong to a body for which `flags` is set? Collective.
+bool on_flagged_body(const Mesh& mesh, const std::string& surface, const std::vector<std::uint8_t>& flags) {
+  int any = 0;
+  for (const auto body : mesh.surfaces.at(surface).bodies)
+    any = any || flags[body];
+  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, mesh.comm);
+  return any != 0;
+}
+
+std::array<double, 3> padded(const std::vector<double>& values) {
+  std::array<double, 3> array{};
+  std::copy_n(values.begin(), std::min<std::size_t>(3, values.size()), array.begin());
+  return array;
+}
+
+std::array<double, 3> unit(std::array<double, 3> vector) {
+  const double length = std::hypot(vector[0], vector[1], vector[2]);
+  for (double& component : vector)
+    component /= length;
+  return vector;
+}
+
+std::variant<std::string, RigidMaster> make_master(const MasterDeck& master) {
+  using Result = std::variant<std::string, RigidMaster>;
+  return std::visit(
+      Overloaded{[](const Located<std::string>& name) -> Result { return name.value; },
+                 [](const PlaneDeck& plane) -> Result {
+                   return RigidMaster{RigidPlane{padded(plane.point), unit(padded(plane.normal))}, plane.displacement};
+                 },
+                 [](const SphereDeck& sphere) -> Result {
+                   return RigidMaster{RigidSphere{padded(sphere.centre), sphere.radius}, sphere.displacement};
+                 },
+                 [](const CylinderDeck& cylinder) -> Result {
+                   if (cylinder.axis.empty()) // 2D: the cylinder's section is a circle
+                     return RigidMaster{RigidSphere{padded(cylinder.centre), cylinder.radius}, cylinder.displacement};
+                   return RigidMaster{
+                       RigidCylinder{padded(cylinder.centre), unit(padded(cylinder.axis)), cylinder.radius},
+                       cylinder.displacement};
+                 }},
+      master);
+}
+
+/// The contact pairs, with an extra field of unknowns for each that wants one.
+std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const std::vector<BulkLawPtr>& laws,
+                                    const std::vector<std::uint8_t>& floating, std::vector<NodeField>& fields) {
+  std::vector<ContactPair> pairs;
+  for (const auto& declared : deck.contact) {
+    ContactPair pair{.name = declared.name.value,
+                     .slave = declared.slave.value,
+                     .master = make_master(declared.master.value),
+                     .enforcement = {},
+                     .projection = {},
+                     .space = deck.space,
+                     .stiffness = {}};
+    std::visit(Overloaded{[&](const PenaltyDeck& penalty) {
+                            pair.enforcement = Penalty{};
+                            pair.alpha = penalty.alpha;
+                          },
+                          [&](const UzawaDeck& uzawa) {
+                            pair.enforcement = Uzawa{};
+                            pair.alpha = uzawa.alpha;
+                          },
+                          [&](const SemismoothDeck& semismooth) {
+                            pair.enforcement = Semismooth{static_cast<int>(fields.size())};
+                            pair.alpha = semismooth.alpha;
+                            fields.push_back(multiplier_nodes(mesh, pair.name, pair.slave));
+                          }},
+               declared.enforce);
+    if (std::holds_alternative<SlaveNormalDeck>(declared.projection)) pair.projection = SlaveNormal{};
+    pair.integration_degree = std::get<FacetIntegrationDeck>(declared.integration).order;
+    pair.holds_floating_body = on_flagged_body(mesh, pair.slave, floating);
+    pair.search_distance = declared.search_distance.value_or(0.1 * surface_diagonal(mesh, pair.slave));
+    if (const auto* master = std::get_if<std::string>(&pair.master)) {
+      pair.holds_floating_body = on_flagged_body(mesh, *master, floating) || pair.holds_floating_body;
+      if (!declared.search_distance)
+        pair.search_distance = std::min(pair.search_distance, 0.1 * surface_diagonal(mesh, *master));
+    }
+    for (const auto& law : laws)
+      pair.stiffness.push_back(law->stiffness());
+    pairs.push_back(std::move(pair));
+  }
+  return pairs;
+}
+
+/// What the deck's `boundary` and `body_force` ask for.
+struct Conditions {
+  std::vector<PrescribedDisplacement> prescribed;
+  std::vector<TiedGroup> tied;
+  std::vector<SurfaceLoad> surface;
+  std::vector<BodyLoad> body;
+  std::vector<ResultantLoad> resultants;
+};
+
+Conditions make_conditions(const Deck& deck) {
+  Conditions conditions;
+  for (const auto& condition : deck.boundary) {
+    for (int c = 0; c < 3; ++c) {
+      if (condition.displacement[c])
+        conditions.prescribed.push_back({condition.on.value, c, *condition.displacement[c]});
+      if (condition.resultant[c]) {
+        conditions.resultants.push_back({conditions.tied.size(), *condition.resultant[c]});
+        conditions.tied.push_back({condition.on.value, c});
+      }
+    }
+    const bool traction =
+        std::any_of(condition.traction.begin(), condition.traction.end(), [](const auto& c) { return c.has_value(); });
+    if (traction || condition.pressure)
+      conditions.surface.push_back({condition.on.value, condition.traction, condition.pressure});
+  }
+  for (const auto& [body, force] : deck.body_force)
+    conditions.body.push_back({body, force.value});
+  return conditions;
+}
+
+} // namespace
+
+double Scene::bulk_energy(Vec unknowns) const {
+  double energy = bulk->stored_energy(problem->state_at(unknowns));
+  MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  return energy;
+}
+
+std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) {
+  auto scene = std::make_unique<Scene>();
+  {
+    const Phase phase("mesh");
+    auto input = read_input(comm, deck_path);
+    scene->deck = std::move(input.deck);
+    scene->mesh = distribute_mesh(comm, input.raw, contact_hints(scene->deck), scene->deck.mesh.refine);
+  }
+  const auto& deck = scene->deck;
+  const auto& mesh = scene->mesh;
+  const Phase phase("set up");
+  auto conditions = make_conditions(deck);
+  const auto laws = body_laws(deck, mesh);
+  const auto floating = find_floating_bodies(mesh, conditions.prescribed, deck.space == Space::Axisymmetric);
+  std::vector<double> stiffness;
+  for (std::size_t b = 0; b < mesh.bodies.size(); ++b) {
+    stiffness.push_back(laws[b]->stiffness());
+    if (floating[b]) scene->floating.push_back(mesh.bodies[b]);
+  }
+  std::vector<NodeField> fields;
+  auto pairs = make_pairs(deck, mesh, laws, floating, fields);
+  scene->layout = std::make_unique<DofLayout>(mesh, conditions.tied, fields);
+  const auto& layout = *scene->layout;
+
+  std::vector<std::unique_ptr<Form>> forms;
+  auto bulk = std::make_unique<BulkForm>(layout, deck.space, laws);
+  scene->bulk = bulk.get();
+  forms.push_back(std::move(bulk));
+  if (!conditions.surface.empty() || !conditions.body.empty() || !conditions.resultants.empty()) {
+    auto loads = std::make_unique<LoadForm>(layout, deck.space, std::move(conditions.surface),
+                                            std::move(conditions.body), std::move(conditions.resultants));
+    scene->loads = loads.get();
+    forms.push_back(std::move(loads));
+  }
+  if (!scene->floating.empty()) forms.push_back(std::make_unique<SupportForm>(layout, floating, stiffness));
+  std::vector<ContactForm*> uzawa;
+  for (auto& pair : pairs) {
+    const Phase search("search");
+    auto form = std::make_unique<ContactForm>(layout, std::move(pair));
+    scene->contacts.push_back(form.get());
+    if (std::holds_alternative<Uzawa>(form->pair().enforcement)) uzawa.push_back(form.get());
+    forms.push_back(std::move(form));
+  }
+  if (!uzawa.empty()) scene->multipliers = std::make_unique<UzawaMultipliers>(mesh, uzawa);
+  scene->problem = std::make_unique<Problem>(layout, std::move(forms), std::move(conditions.prescribed));
+  return scene;
+}
+
+std::vector<ContactPairNames> pair_names(const Scene& scene) {
+  std::vector<ContactPairNames> names;
+  for (const auto* contact : scene.contacts) {
+    ContactPairNames pair{.name = contact->pair().name, .slave = contact->pair().slave, .master = {}};
+    if (const auto* rigid = std::get_if<RigidMaster>(&contact->pair().master))
+      pair.master = MovedShape{rigid->shape, contact->rigid_shift()};
+    else
+      pair.master = std::get<std::string>(contact->pair().master);
+    names.push_back(std::move(pair));
+  }
+  return names;
+}
+
+} // namespace amontons

@@ -1,0 +1,41 @@
+// A deck turned into a Problem: the one place that knows every part. Nothing is constructed that the deck does not ask
+// for.
+#pragma once
+
+#include "contact/uzawa_multipliers.hpp"
+#include "deck.hpp"
+#include "form/bulk.hpp"
+#include "form/loads.hpp"
+#include "form/problem.hpp"
+#include "mesh/mesh.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace amontons {
+
+/// Everything that a run computes with. Lives on the heap and does not move: its parts refer to each other.
+struct Scene {
+  Deck deck;
+  Mesh mesh;
+  std::unique_ptr<DofLayout> layout;
+  std::unique_ptr<Problem> problem;
+  BulkForm* bulk = nullptr;  // owned by the problem
+  LoadForm* loads = nullptr; // absent without loads
+  std::vector<ContactForm*> contacts;
+  std::unique_ptr<UzawaMultipliers> multipliers; // absent without `uzawa` pairs
+  std::vector<std::string> floating;             // bodies held by contact alone
+
+  /// Strain energy of all bodies. Collective.
+  double bulk_energy(Vec unknowns) const;
+};
+
+/// Reads the deck and the mesh, checks both, distributes and sets up. Throws UserError with everything that is wrong,
+/// on every rank. Collective.
+std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path);
+
+/// The pairs as the deck declares them, with rigid masters where they are now: for reports and the certificate.
+std::vector<ContactPairNames> pair_names(const Scene& scene);
+
+} // namespace amontons

@@ -1,0 +1,29 @@
+// What a deck asks of its mesh, and the way from a deck's file to checked input that both `check` and a run take.
+#pragma once
+
+#include "deck.hpp"
+#include "mesh/build.hpp"
+
+namespace amontons {
+
+/// The mesh that the deck names, with the path of its file as seen from the working directory.
+MeshSource mesh_source(const Deck& deck);
+
+/// The pairs of mesh surfaces that the deck declares to be in contact.
+ContactHints contact_hints(const Deck& deck);
+
+/// Throws UserError with everything in the deck that does not fit the mesh, each with its place in the deck: groups and
+/// bodies that do not exist or have the wrong dimension, bodies without material, slave and master with common facets,
+/// conditions that contradict each other at shared nodes, loaded or contact surfaces inside a body ... Serial: call
+/// where `raw` is.
+void validate_against_mesh(const Deck& deck, const RawMesh& raw);
+
+struct CheckedInput {
+  Deck deck;
+  RawMesh raw; // on rank 0; empty elsewhere
+};
+
+/// Reads and checks deck and mesh; nothing is written. Throws UserError on every rank. Collective.
+CheckedInput read_input(MPI_Comm comm, const std::string& deck_path);
+
+} // namespace amontons

@@ -1,0 +1,142 @@
+// Balance of forces and moments, of the scene and of each body; the smallest volume ratio.
+#include "accuracy/checks.hpp"
+#include "accuracy/facet_cloud.hpp"
+#include "math/reference_element.hpp"
+#include "math/tensor.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace amontons::accuracy {
+
+namespace {
+
+/// For each body the first body of the set that it forms with those it shares nodes with (welded, not in contact).
+/// `body_of_node`: receives a body of each local node. Collective.
+std::vector<std::size_t> welded_bodies(const Mesh& mesh, std::vector<std::int32_t>& body_of_node) {
+  const std::size_t count = mesh.bodies.size();
+  std::vector<std::uint8_t> shares(count * count, 0);
+  body_of_node.assign(mesh.num_local(), -1);
+  for (const CellBlock& block : mesh.blocks)
+    for (const std::int32_t node : block.nodes) {
+      std::int32_t& known = body_of_node[node];
+      if (known < 0) known = block.body;
+      shares[known * count + block.body] = shares[block.body * count + known] = 1;
+    }
+  MPI_Allreduce(MPI_IN_PLACE, shares.data(), static_cast<int>(shares.size()), MPI_UINT8_T, MPI_MAX, mesh.comm);
+  std::vector<std::size_t> first(count);
+  std::iota(first.begin(), first.end(), 0);
+  // Spread the smallest number until nothing changes; chains of bodies are short.
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t a = 0; a < count; ++a)
+      for (std::size_t b = 0; b < count; ++b)
+        if (shares[a * count + b] != 0 && first[b] < first[a]) {
+          first[a] = first[b];
+          changed = true;
+        }
+  }
+  return first;
+}
+
+/// Sizes of the force and of the moment in a wrench. Around the axis of revolution radial forces and moments cancel by
+/// themselves: only the axial force is a condition.
+std::array<double, 2> sizes(const std::array<double, 6>& wrench, Space space) {
+  if (space == Space::Axisymmetric) return {std::abs(wrench[1]), 0.0};
+  return {std::hypot(wrench[0], wrench[1], wrench[2]), std::hypot(wrench[3], wrench[4], wrench[5])};
+}
+
+/// Volume after deformation over volume before, at a point of a cell: det(∂x/∂ξ) / det(∂X/∂ξ), with the hoop.
+template <int dim>
+double volume_ratio(const CertificateInput& input, std::span<const std::int32_t> nodes, std::span<const double> value,
+                    std::span<const double> gradient) {
+  using Matrix = Eigen::Matrix<double, dim, dim>;
+  Matrix before = Matrix::Zero(), after;
+  Matrix moved = Matrix::Zero();
+  double radius = 0.0, widening = 0.0;
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    const Eigen::Map<const Point<dim>> X(input.mesh.coordinates.data() + std::size_t(nodes[a]) * dim);
+    const Eigen::Map<const Point<dim>> u(input.displacement.data() + std::size_t(nodes[a]) * dim);
+    const Eigen::Map<const Point<dim>> slope(gradient.data() + a * dim);
+    before += X * slope.transpose();
+    moved += u * slope.transpose();
+    radius += value[a] * X[0];
+    widening += value[a] * u[0];
+  }
+  after = before + moved;
+  const double ratio = after.determinant() / before.determinant();
+  return input.space == Space::Axisymmetric ? ratio * (1.0 + widening / radius) : ratio;
+}
+
+} // namespace
+
+void add_wrench(std::array<double, 6>& sum, const std::array<double, 3>& x, const std::array<double, 3>& pivot,
+                const std::array<double, 3>& f) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t i = (c + 1) % 3, j = (c + 2) % 3;
+    sum[c] += f[c];
+    sum[3 + c] += (x[i] - pivot[i]) * f[j] - (x[j] - pivot[j]) * f[i];
+  }
+}
+
+BalanceChecks check_balance(const CertificateInput& input, const std::array<double, 3>& pivot, double size,
+                            const ClaimedForces& forces) {
+  const Mesh& mesh = input.mesh;
+  std::vector<std::int32_t> body_of_node;
+  const std::vector<std::size_t> first = welded_bodies(mesh, body_of_node);
+  // Rows: the whole scene, then sets of bodies under their first body's number; behind them the force scale.
+  const std::size_t rows = mesh.bodies.size() + 1;
+  std::vector<std::array<double, 6>> sums(rows + 1, std::array<double, 6>{});
+  double& absolute = sums.back()[0];
+  absolute = forces.absolute;
+  for (std::int32_t node = 0; node < mesh.num_local(); ++node) {
+    std::array<double, 3> x{}, f{};
+    std::copy_n(mesh.position(node).begin(), mesh.dim, x.begin());
+    std::copy_n(input.external_forces.begin() + std::ptrdiff_t(node) * mesh.dim, mesh.dim, f.begin());
+    if (f == std::array<double, 3>{}) continue;
+    absolute += std::hypot(f[0], f[1], f[2]);
+    add_wrench(sums[0], x, pivot, f);
+    add_wrench(sums[1 + first[body_of_node[node]]], x, pivot, f);
+  }
+  for (std::size_t c = 0; c < 6; ++c) {
+    sums[0][c] += forces.by_rigid[c];
+    for (std::size_t body = 0; body + 1 < rows; ++body)
+      sums[1 + first[body]][c] += forces.on_body[body][c];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(6 * sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+
+  const double scale = std::max(absolute, input.force_floor);
+  BalanceChecks result;
+  const auto scene = sizes(sums[0], input.space);
+  if (scene[0] != 0.0) result.force.offer(scene[0] / scale, [] { return std::string("the whole scene"); });
+  if (scene[1] != 0.0) result.moment.offer(scene[1] / (scale * size), [] { return std::string("the whole scene"); });
+  for (std::size_t body = 0; body + 1 < rows; ++body) {
+    const auto part = sizes(sums[1 + body], input.space);
+    const double value = std::max(part[0], part[1] / size);
+    if (value != 0.0) result.body.offer(value / scale, [&] { return "body '" + mesh.bodies[body] + "'"; });
+  }
+  return result;
+}
+
+Worst check_volume(const CertificateInput& input) {
+  const Mesh& mesh = input.mesh;
+  Worst worst{-std::numeric_limits<double>::infinity(), ""};
+  for (const CellBlock& block : mesh.blocks) {
+    const Tabulation& table = tabulation(block.type, 2 * element_order(block.type));
+    for (std::int32_t c = 0; c < block.size(); ++c)
+      for (int q = 0; q < table.rule->size(); ++q) {
+        const auto nodes = block.cell(c);
+        const double ratio = mesh.dim == 2 ? volume_ratio<2>(input, nodes, table.value(q), table.gradient(q))
+                                           : volume_ratio<3>(input, nodes, table.value(q), table.gradient(q));
+        worst.offer(-ratio, [&] {
+          return "body '" + mesh.bodies[block.body] + "', cell with a corner at " + place_text(mesh.position(nodes[0]));
+        });
+      }
+  }
+  return over_ranks(mesh.comm, std::move(worst));
+}
+
+} // namespace amontons::accuracy

@@ -1,0 +1,78 @@
+// The certificate of an accepted increment: whether the contact conditions, the balances and the energy bounds really
+// hold. It searches the surfaces afresh and shares nothing with the solver but the mesh, its shape functions and
+// lib/geometry; it reads what the solver claims as plain data. Small kinematics.
+#pragma once
+
+#include "contact/contact_samples.hpp"
+#include "math/space.hpp"
+#include "mesh/mesh.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace amontons {
+
+/// The largest value of each item that still passes (of volume_ratio: the value that must be exceeded). Dimensionless.
+struct CertificateTolerances {
+  double penetration = 0.05;     // depth / local facet size
+  double tension = 1e-2;         // tensile contact traction / largest pressure
+  double complementarity = 1e-2; // Σ |pressure| |gap| / h / total force
+  double balance = 1e-6;         // force and moment out of balance / force scale
+  double energy = 1e-6;          // violation of the energy bounds / energy scale
+  double volume_ratio = 0.0;     // smallest det(I + ∇u) / reference volume
+};
+
+/// Energies over all ranks, the same on every rank. All cumulative since the start of the run.
+struct EnergyLedger {
+  /// Σ potential of all forms: strain energy of the bodies and the potential (σ² − λ²) / (2 ε) of the contact.
+  double stored = 0.0;
+  /// Σ ½ (f_old + f) · Δu over supports, loads and moving rigid masters.
+  double external_work = 0.0;
+  /// Σ ½ |Δf · Δu|, over the same. Frictionless contact of linear elastic bodies has a convex potential, so in every
+  /// increment
+  ///   f_old · Δu <= Δ stored <= f · Δu   and   |external_work − stored| <= work_uncertainty.
+  double work_uncertainty = 0.0;
+  /// f · u + Σ over slave points of pressure · n · (u_slave − u_master) − 2 · (strain energy), now: zero for linear
+  /// elastic bodies in equilibrium. And the sum of the absolute values of the terms.
+  double virtual_work_defect = 0.0;
+  double virtual_work_scale = 0.0;
+};
+
+/// What is certified. Views the caller's data.
+struct CertificateInput {
+  const Mesh& mesh;
+  Space space;
+  std::span<const double> displacement;    // num_local x dim, ghosts up to date
+  std::span<const ContactPairNames> pairs; // the same on every rank
+  std::span<const ContactSamples> samples; // of this rank, one a pair
+  /// num_local x dim: this rank's parts of the applied loads and of the support reactions (their sums over ranks
+  /// count). The out-of-balance force of a node that is not supported does not belong here: it is what the balance is
+  /// to find.
+  std::span<const double> external_forces;
+  EnergyLedger energy;
+  CertificateTolerances tolerances;
+  /// Forces and energies below these are rounding (an unloaded scene has nothing else): lower limits of the scales.
+  double force_floor = 0.0;
+  double energy_floor = 0.0;
+};
+
+struct Certificate {
+  struct Item {
+    std::string name;
+    double value; // 1e300 stands for not a number or no finite value
+    double tolerance;
+    bool passed;
+    std::string where; // the worst place, in words; may be empty
+  };
+  /// penetration, tension, complementarity, force_balance, moment_balance, body_balance, virtual_work, energy,
+  /// volume_ratio, missed_contact: always all of them, in this order.
+  std::vector<Item> items;
+  bool passed() const;
+};
+
+/// Checks everything; the same result on every rank. Throws std::invalid_argument when the input does not fit together.
+/// Collective.
+Certificate certify(const CertificateInput& input);
+
+} // namespace amontons

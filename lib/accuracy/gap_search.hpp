@@ -1,0 +1,40 @@
+// The gap between points of a slave surface and a whole master surface, from a search of its own. For lib/accuracy
+// only.
+#pragma once
+
+#include "accuracy/facet_cloud.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace amontons::accuracy {
+
+/// A point of the slave surface: X, u, outward normal and size of its facet.
+struct SlavePoint {
+  std::array<double, 3> place{};
+  std::array<double, 3> displacement{};
+  std::array<double, 3> normal{};
+  double size = 0.0;
+};
+
+/// What a slave point finds on the master. The gap is that of small kinematics,
+///   g = n · (X_s − ρ(ξ)) + n · (u_s − u_m(ξ)),
+/// with ρ(ξ) the point of the master closest to X_s and n the normal there: the facet's inside a facet; on an edge or
+/// vertex where facets meet the direction of X_s − ρ, when it lies between their normals.
+struct MasterHit {
+  bool found = false;     // false: no master facet that faces the point is near enough to be reached
+  double gap = 0.0;       // beyond the rim of the master: of the surface continued straight on
+  double beyond = 0.0;    // distance beyond the rim; zero over the surface. Points beyond the rim do not penetrate.
+  std::int32_t body = -1; // of the master facet
+};
+
+/// Searches the master for every point of this rank. A master facet farther than the displacements can bridge is not
+/// looked at. Collective.
+std::vector<MasterHit> find_on_master(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
+                                      std::span<const SlavePoint> points);
+
+/// Distance of r from the cone of the combinations Σ a_i n_i, a_i >= 0, of unit vectors.
+double distance_to_cone(const std::array<double, 3>& r, std::span<const std::array<double, 3>> normals);
+
+} // namespace amontons::accuracy

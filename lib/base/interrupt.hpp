@@ -1,0 +1,29 @@
+// Being asked to stop (Ctrl-C, a batch system's warning) turned into a question that the solver asks at safe places.
+#pragma once
+
+#include <array>
+#include <csignal>
+#include <mpi.h>
+
+namespace amontons {
+
+/// While it lives, SIGINT, SIGTERM and SIGUSR1 set a flag instead of ending the process (Open MPI's mpirun passes
+/// SIGUSR1 on as it is, and answers SIGINT and SIGTERM by sending SIGTERM to its ranks). A second signal of the same
+/// kind has its default effect, so that a run that does not get to ask can still be ended. The handlers found (PETSc's)
+/// come back at the end of the scope. One at a time, made after PetscInitialize.
+class InterruptScope {
+ public:
+  InterruptScope();
+  ~InterruptScope();
+  InterruptScope(const InterruptScope&) = delete;
+  InterruptScope& operator=(const InterruptScope&) = delete;
+
+ private:
+  static constexpr std::array signals_ = {SIGINT, SIGTERM, SIGUSR1};
+  std::array<struct sigaction, signals_.size()> found_{};
+};
+
+/// Has any rank been asked to stop since the InterruptScope began? The same answer on every rank. Collective.
+bool interrupted(MPI_Comm comm);
+
+} // namespace amontons

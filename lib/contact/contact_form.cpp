@@ -1,0 +1,459 @@
+// The multipliers are the lumped L2 projection of the traction, λ_i ∫ N_i = ∫ N_i σ: an average of numbers <= 0, so a nodal
+// multiplier is never tensile, also at the edge of contact. (With the consistent mass it overshoots there.) What the lumping
+// does to the constraint is that ε ∫ N_i g equals (lumped − consistent mass) λ, of order h² λ'' and zero for uniform pressure.
+//
+// Scaling of unknown multipliers. With traction λ = s μ, s one number per pair (force / volume, the mean of ε), μ has the
+// unit of a displacement and its equation that of a force; so norms over all equations mean something and nothing depends on
+// the units. u and μ rows are the derivatives of
+//   Π(u, μ) = ∫ min(0, λ + ε g)² / (2 ε) − Σ_i λ_i² ∫ N_i / (2 ε):
+//   δu:  ∫ σ δg,    δμ_i:  s ∫ N_i (σ − λ_i) / ε,
+// second derivatives (χ = 1 in contact, else 0):  uu: χ ε δg δg,  uμ: χ s δg N,  μμ: χ s² N N / ε − s² δ_ij N_i / ε. Symmetric.
+#include "contact/contact_form.hpp"
+
+#include "base/timer.hpp"
+#include "contact/kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace amontons {
+
+namespace {
+
+/// Points whose gap is below this many facet sizes get a place in the matrix before they touch.
+constexpr double coupling_reach = 1.5;
+/// Surfaces that start closer than this part of a facet size are guessed to be in contact.
+constexpr double guess_reach = 1e-2;
+
+bool any_of_all(MPI_Comm comm, bool mine) {
+  int any = mine ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, comm);
+  return any != 0;
+}
+
+} // namespace
+
+struct ContactForm::Group {
+  std::size_t begin, end; // of points
+  std::int32_t facet, master;
+};
+
+NodeField multiplier_nodes(const Mesh& mesh, const std::string& pair, const std::string& slave) {
+  NodeField field{.name = pair, .nodes = {}};
+  for (const auto node : mesh.node_groups.at(slave))
+    if (mesh.is_vertex[node]) field.nodes.push_back(node);
+  return field;
+}
+
+ContactForm::ContactForm(const DofLayout& layout, ContactPair pair)
+    : layout_(layout), pair_(std::move(pair)), nodes_(multiplier_nodes(layout.mesh(), pair_.name, pair_.slave)),
+      space_(layout.mesh(), {nodes_}), position_(layout.mesh().num_local(), -1), points_(layout, pair_) {
+  for (std::size_t i = 0; i < nodes_.nodes.size(); ++i) position_[nodes_.nodes[i]] = static_cast<std::int32_t>(i);
+  const std::size_t n = points_.points().size();
+  gap_.assign(n, 0.0);
+  lambda_.assign(n, 0.0);
+  augmented_.assign(n, 0.0);
+  active_.assign(n, 0);
+  coupled_.assign(n, 0);
+  multipliers_.assign(nodes_.nodes.size(), 0.0);
+  multipliers_old_ = multipliers_;
+  for (std::size_t i = 0; i < n; ++i) {
+    gap_[i] = points_.points()[i].gap0;
+  }
+  couple_near();
+
+  double sums[2] = {0.0, 0.0};
+  for (const auto& point : points_.points()) {
+    sums[0] += point.epsilon / pair_.alpha * point.weight;
+    sums[1] += point.weight;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, layout.mesh().comm);
+  scale_ = sums[0] / sums[1];
+  if (is_unknown()) {
+    const int field = std::get<Semismooth>(pair_.enforcement).field;
+    std::vector<PetscInt> equations;
+    for (const auto node : nodes_.nodes) equations.push_back(layout.extra_equation(field, node));
+    const auto size = static_cast<PetscInt>(equations.size());
+    IsHandle from;
+    AMT_PETSC(ISCreateGeneral(layout.mesh().comm, size, equations.data(), PETSC_COPY_VALUES, from.put()));
+    AMT_PETSC(VecCreateSeq(PETSC_COMM_SELF, size, local_multipliers_.put()));
+    const auto global = layout.new_vector();
+    AMT_PETSC(VecScatterCreate(global, from, local_multipliers_, nullptr, multiplier_scatter_.put()));
+  }
+}
+
+std::vector<ContactForm::Group> ContactForm::groups() const {
+  std::vector<Group> all;
+  const auto& points = points_.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (all.empty() || all.back().facet != points[i].facet || all.back().master != points[i].master)
+      all.push_back({i, i, points[i].facet, points[i].master});
+    all.back().end = i + 1;
+  }
+  return all;
+}
+
+// --- state at a point --------------------------------------------------------------------------------------------------
+
+double ContactForm::gap_at(const ContactPoint& point, const State& state) const {
+  if (point.master == ContactPoint::none) return 1e300;
+  const int d = layout_.dim();
+  double gap = point.gap0;
+  const auto nodes = points_.slave().facet(point.facet);
+  const auto shape = points_.slave_shape(point);
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (int c = 0; c < d; ++c) gap += point.normal[c] * shape[a] * state.displacement[std::size_t(nodes[a]) * d + c];
+  if (point.master == ContactPoint::rigid) return gap; // its motion is in gap0
+  const auto masters = points_.master()->nodes(point.master);
+  for (std::size_t b = 0; b < masters.size(); ++b) {
+    const auto displacement = points_.master()->displacement(masters[b]);
+    for (int c = 0; c < d; ++c) gap -= point.normal[c] * point.master_shape[b] * displacement[c];
+  }
+  return gap;
+}
+
+double ContactForm::multiplier_at(const ContactPoint& point) const {
+  const auto nodes = points_.slave().facet(point.facet);
+  const auto shape = points_.multiplier_shape(point);
+  double lambda = 0.0;
+  for (std::size_t a = 0; a < shape.size(); ++a) lambda += shape[a] * multipliers_[position_[nodes[a]]];
+  return lambda;
+}
+
+void ContactForm::fetch_multipliers(const State& state) {
+  if (!is_unknown()) return;
+  AMT_PETSC(VecScatterBegin(multiplier_scatter_, state.unknowns, local_multipliers_, INSERT_VALUES, SCATTER_FORWARD));
+  AMT_PETSC(VecScatterEnd(multiplier_scatter_, state.unknowns, local_multipliers_, INSERT_VALUES, SCATTER_FORWARD));
+  VecReader values(local_multipliers_);
+  for (std::size_t i = 0; i < multipliers_.size(); ++i) multipliers_[i] = scale_ * values[static_cast<PetscInt>(i)];
+}
+
+/// Gap, λ, λ̂ and status of all points. Collective.
+void ContactForm::evaluate(const State& state) {
+  if (points_.has_rigid_master() && state.time != rigid_time_) {
+    points_.move_rigid_master(state.time);
+    rigid_time_ = state.time;
+  }
+  if (points_.master()) points_.master()->refresh(state.unknowns);
+  fetch_multipliers(state);
+  const bool has_multipliers = !std::holds_alternative<Penalty>(pair_.enforcement);
+  const auto& points = points_.points();
+  bool touches = false;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    gap_[i] = gap_at(points[i], state);
+    lambda_[i] = has_multipliers ? multiplier_at(points[i]) : 0.0;
+    augmented_[i] = augmented_traction(lambda_[i], points[i].epsilon, gap_[i]);
+    active_[i] = points[i].master != ContactPoint::none && normal_traction_derivative(augmented_[i]) > 0.0;
+    touches = touches || active_[i];
+  }
+  if (state.first_guess && !any_of_all(layout_.mesh().comm, touches)) guess_contact();
+}
+
+/// Nothing touches: take the points where the surfaces are nearest for closed, for one residual and one tangent, when
+/// the surfaces (nearly) touch or a body has nothing else to hold it. The next iteration decides by the true test.
+void ContactForm::guess_contact() {
+  const auto& points = points_.points();
+  double nearest = 1e300;
+  for (std::size_t i = 0; i < points.size(); ++i) nearest = std::min(nearest, gap_[i] / points[i].size);
+  MPI_Allreduce(MPI_IN_PLACE, &nearest, 1, MPI_DOUBLE, MPI_MIN, layout_.mesh().comm);
+  if (nearest > guess_reach && !pair_.holds_floating_body) return;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    active_[i] = points[i].master != ContactPoint::none && gap_[i] / points[i].size <= nearest + guess_reach;
+}
+
+// --- coupling ------------------------------------------------------------------------------------------------------------
+
+bool ContactForm::coupled(const Group& group) const {
+  return group.master >= 0 && std::any_of(coupled_.begin() + static_cast<std::ptrdiff_t>(group.begin),
+                                          coupled_.begin() + static_cast<std::ptrdiff_t>(group.end),
+                                          [](std::uint8_t c) { return c != 0; });
+}
+
+void ContactForm::couple_near() {
+  const auto& points = points_.points();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (active_[i] || (points[i].master >= 0 && gap_[i] < coupling_reach * points[i].size)) coupled_[i] = 1;
+}
+
+/// Slave displacements, then unknown multipliers, then master displacements where the group is coupled.
+void ContactForm::gather_equations(const Group& group, std::vector<PetscInt>& equations) const {
+  const int d = layout_.dim();
+  equations.clear();
+  const auto nodes = points_.slave().facet(group.facet);
+  for (const auto node : nodes)
+    for (int c = 0; c < d; ++c) equations.push_back(layout_.equation(node, c));
+  if (is_unknown()) {
+    const int field = std::get<Semismooth>(pair_.enforcement).field;
+    for (int a = 0; a < num_vertices(points_.slave().types[group.facet]); ++a)
+      equations.push_back(layout_.extra_equation(field, nodes[a]));
+  }
+  if (coupled(group))
+    for (const auto node : points_.master()->nodes(group.master)) {
+      const auto of_node = points_.master()->equations(node);
+      equations.insert(equations.end(), of_node.begin(), of_node.end());
+    }
+}
+
+void ContactForm::couple(Coupling& coupling) const {
+  std::vector<PetscInt> equations;
+  for (const auto& group : groups()) {
+    gather_equations(group, equations);
+    coupling.add(equations);
+  }
+}
+
+bool ContactForm::coupling_changed(const State& state) {
+  evaluate(state);
+  bool missing = false;
+  for (std::size_t i = 0; i < active_.size(); ++i)
+    missing = missing || (active_[i] && points_.points()[i].master >= 0 && !coupled_[i]);
+  if (missing) couple_near();
+  return missing;
+}
+
+bool ContactForm::tangent_changed(const State& state) {
+  evaluate(state);
+  return !assembled_ || active_ != assembled_active_;
+}
+
+// --- assembly ------------------------------------------------------------------------------------------------------------
+
+/// ∂g/∂(equations of the group), zero at multipliers.
+void ContactForm::gap_variation(const ContactPoint& point, const Group& group, std::span<double> variation) const {
+  const int d = layout_.dim();
+  std::fill(variation.begin(), variation.end(), 0.0);
+  const auto shape = points_.slave_shape(point);
+  for (std::size_t a = 0; a < shape.size(); ++a)
+    for (int c = 0; c < d; ++c) variation[a * d + c] = point.normal[c] * shape[a];
+  if (!coupled(group)) return;
+  const std::size_t masters = points_.master()->nodes(group.master).size();
+  const std::size_t first = variation.size() - masters * d;
+  for (std::size_t b = 0; b < masters; ++b)
+    for (int c = 0; c < d; ++c) variation[first + b * d + c] = -point.normal[c] * point.master_shape[b];
+}
+
+void ContactForm::add_residual(const State& state, Residual& residual) {
+  evaluate(state);
+  const auto& points = points_.points();
+  const int d = layout_.dim();
+  std::vector<PetscInt> equations;
+  std::vector<double> values;
+  for (const auto& group : groups()) {
+    const bool any_active = std::any_of(active_.begin() + static_cast<std::ptrdiff_t>(group.begin),
+                                        active_.begin() + static_cast<std::ptrdiff_t>(group.end),
+                                        [](std::uint8_t a) { return a != 0; });
+    const auto nodes = points_.slave().facet(group.facet);
+    if (any_active) {
+      // Slave forces are local; the master may be on another rank and may not be in the matrix pattern yet.
+      equations.clear();
+      if (group.master >= 0)
+        for (const auto node : points_.master()->nodes(group.master)) {
+          const auto of_node = points_.master()->equations(node);
+          equations.insert(equations.end(), of_node.begin(), of_node.end());
+        }
+      values.assign(equations.size(), 0.0);
+      for (std::size_t i = group.begin; i < group.end; ++i) {
+        const double force = sigma(i) * points[i].weight;
+        const auto shape = points_.slave_shape(points[i]);
+        for (std::size_t a = 0; a < nodes.size(); ++a)
+          for (int c = 0; c < d; ++c)
+            residual.nodal()[std::size_t(nodes[a]) * d + c] += force * points[i].normal[c] * shape[a];
+        for (std::size_t k = 0; k < values.size(); ++k)
+          values[k] -= force * points[i].normal[k % d] * points[i].master_shape[k / d];
+      }
+      residual.add(equations, values);
+    }
+    if (!is_unknown()) continue;
+    const int field = std::get<Semismooth>(pair_.enforcement).field;
+    const int vertices = num_vertices(points_.slave().types[group.facet]);
+    equations.clear();
+    for (int a = 0; a < vertices; ++a) equations.push_back(layout_.extra_equation(field, nodes[a]));
+    values.assign(vertices, 0.0);
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const auto shape = points_.multiplier_shape(points[i]);
+      const double factor = scale_ / points[i].epsilon * points[i].weight;
+      for (int a = 0; a < vertices; ++a)
+        values[a] += factor * shape[a] * (sigma(i) - multipliers_[position_[nodes[a]]]);
+    }
+    residual.add(equations, values);
+  }
+}
+
+void ContactForm::add_tangent(const State& state, Tangent& tangent) {
+  evaluate(state);
+  assembled_active_ = active_;
+  assembled_ = true;
+  const auto& points = points_.points();
+  std::vector<PetscInt> equations;
+  std::vector<double> block, variation;
+  for (const auto& group : groups()) {
+    gather_equations(group, equations);
+    const std::size_t n = equations.size();
+    const std::size_t first = points_.slave().facet(group.facet).size() * layout_.dim();
+    block.assign(n * n, 0.0);
+    variation.resize(n);
+    bool any = false;
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const auto& point = points[i];
+      const auto shape = points_.multiplier_shape(point);
+      const double mm = point.weight * scale_ * scale_ / point.epsilon;
+      if (is_unknown()) {
+        any = true;
+        for (std::size_t a = 0; a < shape.size(); ++a) block[(first + a) * (n + 1)] -= mm * shape[a];
+      }
+      if (!active_[i]) continue;
+      any = true;
+      gap_variation(point, group, variation);
+      const double uu = point.weight * point.epsilon;
+      for (std::size_t r = 0; r < n; ++r)
+        if (variation[r] != 0.0)
+          for (std::size_t c = 0; c < n; ++c) block[r * n + c] += uu * variation[r] * variation[c];
+      if (!is_unknown()) continue;
+      for (std::size_t a = 0; a < shape.size(); ++a) {
+        for (std::size_t b = 0; b < shape.size(); ++b) block[(first + a) * n + first + b] += mm * shape[a] * shape[b];
+        for (std::size_t r = 0; r < n; ++r) {
+          const double coupling = point.weight * scale_ * shape[a] * variation[r];
+          block[r * n + first + a] += coupling;
+          block[(first + a) * n + r] += coupling;
+        }
+      }
+    }
+    if (any) tangent.add(equations, block);
+  }
+}
+
+// --- history and multipliers -----------------------------------------------------------------------------------------
+
+void ContactForm::commit(const State& state) {
+  evaluate(state);
+  multipliers_old_ = multipliers_;
+}
+
+void ContactForm::roll_back() {
+  multipliers_ = multipliers_old_;
+  assembled_ = false;
+}
+
+void ContactForm::hold_multipliers(std::vector<double> multipliers) { multipliers_ = std::move(multipliers); }
+
+void ContactForm::multiplier_defect(const State& state, std::vector<double>& defect, std::vector<double>& mass) {
+  evaluate(state);
+  defect.assign(nodes_.nodes.size(), 0.0);
+  mass.assign(nodes_.nodes.size(), 0.0);
+  const auto& points = points_.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto nodes = points_.slave().facet(points[i].facet);
+    const auto shape = points_.multiplier_shape(points[i]);
+    for (std::size_t a = 0; a < shape.size(); ++a) {
+      const auto at = position_[nodes[a]];
+      defect[at] += points[i].weight * shape[a] * (sigma(i) - multipliers_[at]);
+      mass[at] += points[i].weight * shape[a];
+    }
+  }
+}
+
+double ContactForm::stored_energy(const State& state) {
+  evaluate(state);
+  double energy = 0.0;
+  const auto& points = points_.points();
+  const bool has_multipliers = !std::holds_alternative<Penalty>(pair_.enforcement);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double square = 0.0;
+    const auto nodes = points_.slave().facet(points[i].facet);
+    const auto shape = points_.multiplier_shape(points[i]);
+    for (std::size_t a = 0; has_multipliers && a < shape.size(); ++a)
+      square += shape[a] * std::pow(multipliers_[position_[nodes[a]]], 2);
+    energy += points[i].weight * contact_potential(augmented_[i], square, points[i].epsilon);
+  }
+  return energy;
+}
+
+double ContactForm::work_of_displacement(const State& state) {
+  evaluate(state);
+  double work = 0.0;
+  const auto& points = points_.points();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (active_[i]) work += points[i].weight * sigma(i) * (gap_[i] - points[i].gap0);
+  MPI_Allreduce(MPI_IN_PLACE, &work, 1, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
+  return work;
+}
+
+// --- reports -------------------------------------------------------------------------------------------------------------
+
+/// Multipliers where there are some; for penalty the lumped projection of σ onto the multiplier basis. Collective.
+std::vector<double> ContactForm::nodal_pressure() {
+  std::vector<double> pressure(nodes_.nodes.size());
+  if (!std::holds_alternative<Penalty>(pair_.enforcement)) {
+    for (std::size_t i = 0; i < pressure.size(); ++i) pressure[i] = -multipliers_[i];
+    return pressure;
+  }
+  std::vector<std::vector<double>> load(1, std::vector<double>(pressure.size(), 0.0)), mass = load;
+  const auto& points = points_.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto nodes = points_.slave().facet(points[i].facet);
+    const auto shape = points_.multiplier_shape(points[i]);
+    for (std::size_t a = 0; a < shape.size(); ++a) {
+      load[0][position_[nodes[a]]] -= points[i].weight * shape[a] * sigma(i);
+      mass[0][position_[nodes[a]]] += points[i].weight * shape[a];
+    }
+  }
+  for (auto* part : {&load, &mass}) { // sums over the ranks that share a node
+    const auto global = space_.new_vector();
+    space_.add(*part, global);
+    space_.gather(global, *part);
+  }
+  for (std::size_t i = 0; i < pressure.size(); ++i) pressure[i] = load[0][i] / mass[0][i];
+  return pressure;
+}
+
+ContactSamples ContactForm::samples(const State& state) {
+  evaluate(state);
+  ContactSamples samples;
+  const auto& points = points_.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& point = points[i];
+    samples.facet.push_back(point.facet);
+    samples.xi.push_back(points_.xi(point));
+    samples.place.push_back(point.place);
+    samples.normal.push_back(point.normal);
+    samples.weight.push_back(point.weight);
+    samples.facet_size.push_back(point.size);
+    samples.pressure.push_back(sigma(i) < 0.0 ? -sigma(i) : 0.0);
+    samples.gap.push_back(gap_[i]);
+    samples.status.push_back(active_[i] ? ContactStatus::Slip : ContactStatus::Open);
+  }
+  samples.nodes = nodes_.nodes;
+  samples.nodal_pressure = nodal_pressure();
+  return samples;
+}
+
+ContactTotals ContactForm::totals(const State& state) {
+  evaluate(state);
+  ContactTotals totals;
+  double sums[7] = {}; // force, moment, area
+  double largest[2] = {};
+  const auto& points = points_.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!active_[i]) continue;
+    const auto& point = points[i];
+    double force[3];
+    for (int c = 0; c < 3; ++c) sums[c] += force[c] = -sigma(i) * point.weight * point.normal[c];
+    for (int c = 0; c < 3; ++c)
+      sums[3 + c] += point.place[(c + 1) % 3] * force[(c + 2) % 3] - point.place[(c + 2) % 3] * force[(c + 1) % 3];
+    sums[6] += point.weight;
+    largest[1] = std::max(largest[1], -gap_[i] / point.size);
+  }
+  for (const double pressure : nodal_pressure()) largest[0] = std::max(largest[0], pressure);
+  MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
+  MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, layout_.mesh().comm);
+  for (int c = 0; c < 3; ++c) {
+    totals.force[c] = sums[c];
+    totals.moment[c] = sums[3 + c];
+  }
+  totals.area = sums[6];
+  totals.max_pressure = largest[0];
+  totals.largest_penetration = largest[1];
+  return totals;
+}
+
+} // namespace amontons

@@ -1,0 +1,51 @@
+// What defines a contact pair, as plain data: surfaces, projection, integration, enforcement. Built by the application from the deck.
+#pragma once
+
+#include "base/expression.hpp"
+#include "geometry/rigid_shape.hpp"
+#include "math/space.hpp"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace amontons {
+
+/// A rigid master and how it moves (components of t; absent: at rest).
+struct RigidMaster {
+  RigidShape shape;
+  std::array<std::optional<Expression>, 3> displacement;
+};
+
+/// How a slave point finds its master point.
+struct ClosestPoint {};
+struct SlaveNormal {};
+using ProjectionKind = std::variant<ClosestPoint, SlaveNormal>;
+
+/// Where λ comes from: nowhere, an outer loop, or an unknown of the system (extra field number `field` of the layout).
+struct Penalty {};
+struct Uzawa {};
+struct Semismooth {
+  int field;
+};
+using Enforcement = std::variant<Penalty, Uzawa, Semismooth>;
+
+struct ContactPair {
+  std::string name;
+  std::string slave; // surface group of the mesh
+  std::variant<std::string, RigidMaster> master;
+  Enforcement enforcement;
+  ProjectionKind projection;
+  int integration_degree = 4;    // polynomials integrated exactly on a slave facet
+  double alpha = 1.0;            // dimensionless augmentation: ε = alpha · stiffness / h
+  double search_distance = 0.0;  // farther master facets are not looked at
+  Space space = Space::Solid;
+  /// A body of this pair is held by contact alone: then contact is guessed where the surfaces are nearest when nothing
+  /// touches yet.
+  bool holds_floating_body = false;
+  std::vector<double> stiffness; // Young's modulus per body of the mesh
+};
+
+} // namespace amontons

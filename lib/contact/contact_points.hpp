@@ -1,0 +1,68 @@
+// The quadrature points of a slave surface and what each finds on the master: normal, initial gap, shape functions. In
+// small kinematics this is done once, in the reference configuration (rigid masters: at their present place):
+//   g = g0 + n · (u_slave − u_master),  n and ρ(ξ) fixed.
+#pragma once
+
+#include "contact/contact_pair.hpp"
+#include "contact/master_surface.hpp"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace amontons {
+
+/// A quadrature point of the slave surface.
+struct ContactPoint {
+  std::int32_t facet;          // of the slave FacetSet
+  std::int32_t rule_point;     // index of the point in the facet's quadrature rule
+  std::int32_t master = none;  // facet of the MasterSurface, or one of the marks below
+  double weight = 0.0;         // area
+  double size = 0.0;           // h of the slave facet
+  double epsilon = 0.0;        // augmentation parameter, force / volume
+  double gap0 = 1e300;
+  std::array<double, 3> place{};
+  std::array<double, 3> normal{};
+  std::array<double, 9> master_shape{};
+
+  static constexpr std::int32_t none = -1;  // nothing within the search distance: open for good
+  static constexpr std::int32_t rigid = -2; // the pair's rigid shape
+};
+
+/// The points of a pair on this rank, facet by facet; within a facet those with the same master facet stand together.
+class ContactPoints {
+ public:
+  /// Searches the master. Collective.
+  ContactPoints(const DofLayout& layout, const ContactPair& pair);
+
+  const FacetSet& slave() const { return *slave_; }
+  const std::vector<ContactPoint>& points() const { return points_; }
+  MasterSurface* master() const { return master_.get(); }
+  bool has_rigid_master() const { return !master_; }
+  /// Values of the slave facet's shape functions, and of its multiplier basis (linear), at a point.
+  std::span<const double> slave_shape(const ContactPoint& point) const;
+  std::span<const double> multiplier_shape(const ContactPoint& point) const;
+  std::array<double, 2> xi(const ContactPoint& point) const;
+  /// Moves a rigid master to where it is at time t and takes normals and gaps anew.
+  void move_rigid_master(double t);
+  std::array<double, 3> rigid_shift() const { return shift_; }
+
+ private:
+  void place_points();
+  void search();
+  void find_closest(ContactPoint& point, std::span<const double> slave_normal);
+  void find_along_normal(ContactPoint& point, std::span<const double> slave_normal);
+  void attach(ContactPoint& point, std::int32_t facet, std::span<const double> xi) const;
+  void set_epsilon(ContactPoint& point) const;
+
+  const Mesh& mesh_;
+  const ContactPair& pair_;
+  const FacetSet* slave_;
+  std::vector<ContactPoint> points_;
+  std::vector<std::array<double, 3>> slave_normals_; // per point
+  std::unique_ptr<MasterSurface> master_;
+  std::array<double, 3> shift_{};
+  std::vector<std::int32_t> found_; // scratch
+};
+
+} // namespace amontons

@@ -1,0 +1,141 @@
+#include "contact/master_surface.hpp"
+
+#include <algorithm>
+#include <map>
+#include <unordered_map>
+
+namespace amontons {
+
+namespace {
+
+Box facet_box(const Mesh& mesh, std::span<const std::int32_t> nodes) {
+  Box box;
+  for (const auto node : nodes) box.include(mesh.position(node));
+  return box;
+}
+
+/// Sends message[r] to rank r and returns everything received, in the order of the senders. Collective.
+template <class Number>
+std::vector<Number> exchange(MPI_Comm comm, MPI_Datatype type, const std::vector<std::vector<Number>>& messages) {
+  const int ranks = static_cast<int>(messages.size());
+  std::vector<int> send(ranks), receive(ranks), send_at(ranks + 1, 0), receive_at(ranks + 1, 0);
+  std::vector<Number> outgoing;
+  for (int rank = 0; rank < ranks; ++rank) {
+    send[rank] = static_cast<int>(messages[rank].size());
+    send_at[rank + 1] = send_at[rank] + send[rank];
+    outgoing.insert(outgoing.end(), messages[rank].begin(), messages[rank].end());
+  }
+  MPI_Alltoall(send.data(), 1, MPI_INT, receive.data(), 1, MPI_INT, comm);
+  for (int rank = 0; rank < ranks; ++rank) receive_at[rank + 1] = receive_at[rank] + receive[rank];
+  std::vector<Number> incoming(receive_at[ranks]);
+  MPI_Alltoallv(outgoing.data(), send.data(), send_at.data(), type, incoming.data(), receive.data(), receive_at.data(), type, comm);
+  return incoming;
+}
+
+std::vector<Box> gather_boxes(MPI_Comm comm, const Box& mine) {
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  static_assert(sizeof(Box) == 6 * sizeof(double));
+  std::vector<Box> boxes(ranks);
+  MPI_Allgather(&mine, 6, MPI_DOUBLE, boxes.data(), 6, MPI_DOUBLE, comm);
+  return boxes;
+}
+
+} // namespace
+
+MasterSurface::MasterSurface(const DofLayout& layout, const FacetSet& surface, const Box& reach) : dim_(layout.dim()) {
+  const auto& mesh = layout.mesh();
+  const auto reaches = gather_boxes(mesh.comm, reach);
+  // A facet travels as type, body, then for each node its global number and its dim equations; positions apart.
+  std::vector<std::vector<std::int64_t>> numbers(reaches.size());
+  std::vector<std::vector<double>> positions(reaches.size());
+  for (std::int32_t f = 0; f < surface.size(); ++f) {
+    const auto box = facet_box(mesh, surface.facet(f));
+    for (std::size_t rank = 0; rank < reaches.size(); ++rank) {
+      if (reaches[rank].empty() || !box.meets(reaches[rank])) continue;
+      numbers[rank].push_back(static_cast<std::int64_t>(surface.types[f]));
+      numbers[rank].push_back(surface.bodies[f]);
+      for (const auto node : surface.facet(f)) {
+        numbers[rank].push_back(mesh.global_node(node));
+        for (int c = 0; c < dim_; ++c) numbers[rank].push_back(layout.equation(node, c));
+        const auto place = mesh.position(node);
+        positions[rank].insert(positions[rank].end(), place.begin(), place.end());
+      }
+    }
+  }
+  receive(exchange(mesh.comm, MPI_INT64_T, numbers), exchange(mesh.comm, MPI_DOUBLE, positions));
+  find_rim();
+  std::vector<Box> boxes(num_facets());
+  for (std::int32_t f = 0; f < num_facets(); ++f)
+    for (std::size_t a = 0; a < nodes(f).size(); ++a) boxes[f].include(this->positions(f).subspan(a * dim_, dim_));
+  tree_ = BoxTree(boxes);
+
+  displacement_.assign(equations_.size(), 0.0);
+  const auto size = static_cast<PetscInt>(equations_.size());
+  IsHandle from;
+  AMT_PETSC(ISCreateGeneral(mesh.comm, size, equations_.data(), PETSC_COPY_VALUES, from.put()));
+  AMT_PETSC(VecCreateSeq(PETSC_COMM_SELF, size, local_.put()));
+  const auto global = layout.new_vector();
+  AMT_PETSC(VecScatterCreate(global, from, local_, nullptr, scatter_.put()));
+}
+
+void MasterSurface::receive(std::span<const std::int64_t> numbers, std::span<const double> positions) {
+  std::unordered_map<std::int64_t, std::int32_t> known;
+  facet_positions_.assign(positions.begin(), positions.end());
+  for (std::size_t at = 0; at < numbers.size();) {
+    const auto type = static_cast<ElementType>(numbers[at]);
+    types_.push_back(type);
+    bodies_.push_back(static_cast<std::int32_t>(numbers[at + 1]));
+    at += 2;
+    for (int a = 0; a < amontons::num_nodes(type); ++a, at += 1 + std::size_t(dim_)) {
+      const auto [place, is_new] = known.try_emplace(numbers[at], num_nodes());
+      if (is_new) {
+        global_nodes_.push_back(numbers[at]);
+        for (int c = 0; c < dim_; ++c) equations_.push_back(static_cast<PetscInt>(numbers[at + 1 + c]));
+      }
+      nodes_.push_back(place->second);
+    }
+    offsets_.push_back(static_cast<std::int32_t>(nodes_.size()));
+  }
+}
+
+void MasterSurface::find_rim() {
+  if (dim_ == 2) {
+    std::vector<int> uses(num_nodes(), 0);
+    for (std::int32_t f = 0; f < num_facets(); ++f)
+      for (int v = 0; v < 2; ++v) ++uses[nodes(f)[v]];
+    for (std::int32_t node = 0; node < num_nodes(); ++node)
+      if (uses[node] == 1) rim_.push_back(node);
+    return;
+  }
+  std::map<std::array<std::int32_t, 2>, int> uses;
+  for (std::int32_t f = 0; f < num_facets(); ++f) {
+    const int corners = num_vertices(types_[f]);
+    for (int v = 0; v < corners; ++v) {
+      const auto [low, high] = std::minmax(nodes(f)[v], nodes(f)[(v + 1) % corners]);
+      ++uses[{low, high}];
+    }
+  }
+  for (const auto& [edge, count] : uses)
+    if (count == 1) {
+      rims_.push_back(edge);
+      rim_.insert(rim_.end(), {edge[0], edge[1]});
+    }
+  std::sort(rim_.begin(), rim_.end());
+}
+
+bool MasterSurface::on_rim(std::int32_t facet, std::span<const std::int32_t> corners) const {
+  const auto node = nodes(facet)[corners[0]];
+  if (corners.size() == 1) return std::binary_search(rim_.begin(), rim_.end(), node);
+  const auto [low, high] = std::minmax(node, nodes(facet)[corners[1]]);
+  return std::binary_search(rims_.begin(), rims_.end(), std::array<std::int32_t, 2>{low, high});
+}
+
+void MasterSurface::refresh(Vec unknowns) {
+  AMT_PETSC(VecScatterBegin(scatter_, unknowns, local_, INSERT_VALUES, SCATTER_FORWARD));
+  AMT_PETSC(VecScatterEnd(scatter_, unknowns, local_, INSERT_VALUES, SCATTER_FORWARD));
+  VecReader values(local_);
+  std::copy(values.data(), values.data() + values.size(), displacement_.begin());
+}
+
+} // namespace amontons

@@ -1,0 +1,68 @@
+// The master facets that this rank's slave facets may meet: its own and copies ("ghosts") of other ranks' facets, sent once to
+// every rank whose slave box they meet, with a scatter that brings their nodes' displacements.
+#pragma once
+
+#include "fe/dof_layout.hpp"
+#include "geometry/box_tree.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace amontons {
+
+class MasterSurface {
+ public:
+  /// Gathers the facets of `surface` (a name of Mesh::surfaces) whose boxes meet `reach`, this rank's region of interest.
+  /// Collective.
+  MasterSurface(const DofLayout& layout, const FacetSet& surface, const Box& reach);
+
+  std::int32_t num_facets() const { return static_cast<std::int32_t>(types_.size()); }
+  std::int32_t num_nodes() const { return static_cast<std::int32_t>(global_nodes_.size()); }
+  ElementType type(std::int32_t facet) const { return types_[facet]; }
+  std::int32_t body(std::int32_t facet) const { return bodies_[facet]; }
+  /// Nodes of a facet, as numbers of this surface.
+  std::span<const std::int32_t> nodes(std::int32_t facet) const {
+    return std::span(nodes_).subspan(offsets_[facet], offsets_[facet + 1] - offsets_[facet]);
+  }
+  /// Reference positions of a facet's nodes (number of nodes x dim).
+  std::span<const double> positions(std::int32_t facet) const {
+    return std::span(facet_positions_).subspan(std::size_t(offsets_[facet]) * dim_, std::size_t(offsets_[facet + 1] - offsets_[facet]) * dim_);
+  }
+  /// Displacement equations of a node, dim of them.
+  std::span<const PetscInt> equations(std::int32_t node) const {
+    return std::span(equations_).subspan(std::size_t(node) * dim_, dim_);
+  }
+  /// Facets near a point.
+  const BoxTree& tree() const { return tree_; }
+  /// Does the feature at these corners of the facet (one corner: a vertex; two: an edge) lie on the rim of the surface,
+  /// where no other known facet continues it?
+  bool on_rim(std::int32_t facet, std::span<const std::int32_t> corners) const;
+
+  /// Brings displacements of all nodes up to date with a global vector of unknowns. Collective.
+  void refresh(Vec unknowns);
+  /// Displacement of a node, dim components, as of the last refresh.
+  std::span<const double> displacement(std::int32_t node) const {
+    return std::span(displacement_).subspan(std::size_t(node) * dim_, dim_);
+  }
+
+ private:
+  void receive(std::span<const std::int64_t> numbers, std::span<const double> positions);
+  void find_rim();
+
+  int dim_;
+  std::vector<ElementType> types_;
+  std::vector<std::int32_t> bodies_, offsets_ = {0}, nodes_;
+  std::vector<double> facet_positions_; // per entry of nodes_, dim each
+  std::vector<std::int64_t> global_nodes_;
+  std::vector<PetscInt> equations_;
+  std::vector<double> displacement_;
+  std::vector<std::int32_t> rim_;                  // nodes on the rim in 2D, sorted
+  std::vector<std::array<std::int32_t, 2>> rims_;  // edges on the rim in 3D, sorted
+  BoxTree tree_;
+  VecHandle local_;
+  ScatterHandle scatter_;
+};
+
+} // namespace amontons

@@ -1,0 +1,94 @@
+// A Form adds its part to the residual and the tangent and keeps its own history: bulk solid, loads, contact, later
+// inertia, heat ... Forms do not know each other, the solver, or which unknowns are prescribed.
+#pragma once
+
+#include "fe/dof_layout.hpp"
+
+#include <span>
+#include <vector>
+
+namespace amontons {
+
+/// The iterate at which forms are evaluated.
+struct State {
+  double time = 0.0;
+  Vec unknowns = nullptr;               // global vector of the layout
+  std::span<const double> displacement; // local nodes x dim, ghosts and ties up to date
+  /// True until the first tangent of an increment has been made: a contact form that has nothing in contact may then
+  /// guess where contact will be, so that bodies held by contact alone are held from the first iteration on.
+  bool first_guess = false;
+};
+
+/// Residual under assembly: out-of-balance force (internal minus external) for displacement equations.
+class Residual {
+ public:
+  Residual(const DofLayout& layout, Vec global)
+      : layout_(layout), global_(global), nodal_(std::size_t(layout.mesh().num_local()) * layout.dim()) {}
+  /// Forces at this rank's nodes (num_local x dim), summed over ranks by finish().
+  std::span<double> nodal() { return nodal_; }
+  /// Adds to any equations, on this rank or not.
+  void add(std::span<const PetscInt> equations, std::span<const double> values) {
+    AMT_PETSC(
+        VecSetValues(global_, static_cast<PetscInt>(equations.size()), equations.data(), values.data(), ADD_VALUES));
+  }
+  /// Sums everything up in the global vector. Collective.
+  void finish() {
+    AMT_PETSC(VecAssemblyBegin(global_));
+    AMT_PETSC(VecAssemblyEnd(global_));
+    layout_.add_forces(nodal_, global_);
+  }
+
+ private:
+  const DofLayout& layout_;
+  Vec global_;
+  std::vector<double> nodal_;
+};
+
+/// Tangent under assembly. Rows and columns of prescribed equations are dropped by the Problem that owns the matrix.
+class Tangent {
+ public:
+  virtual ~Tangent() = default;
+  /// Adds a dense square block, row-major, to the given equations.
+  virtual void add(std::span<const PetscInt> equations, std::span<const double> block) = 0;
+};
+
+/// Collects which equations couple, before a matrix exists.
+class Coupling {
+ public:
+  virtual ~Coupling() = default;
+  /// Each of these equations couples to each other one.
+  virtual void add(std::span<const PetscInt> equations) = 0;
+};
+
+class Form {
+ public:
+  Form() = default;
+  Form(const Form&) = delete;
+  Form& operator=(const Form&) = delete;
+  virtual ~Form() = default;
+
+  /// Names the form's part in timings and messages.
+  virtual const char* name() const = 0;
+
+  virtual void couple(Coupling& coupling) const = 0;
+  virtual void add_residual(const State& state, Residual& residual) = 0;
+  virtual void add_tangent(const State& state, Tangent& tangent) = 0;
+
+  /// A tangent that never changes is assembled once.
+  virtual bool tangent_is_constant() const { return false; }
+  virtual bool tangent_is_symmetric() const { return true; }
+  /// Would add_tangent add other numbers than at its last call? Asked on each rank for itself.
+  virtual bool tangent_changed(const State&) { return !tangent_is_constant(); }
+  /// Does the state need couplings that couple() did not name when last called? Asked on each rank for itself; a form
+  /// that says yes names them from then on.
+  virtual bool coupling_changed(const State&) { return false; }
+
+  /// Accepts the state as the start of the next increment, or goes back to the last accepted one.
+  virtual void commit(const State&) {}
+  virtual void roll_back() {}
+
+  /// Energy stored by this form on this rank.
+  virtual double stored_energy(const State&) { return 0.0; }
+};
+
+} // namespace amontons

@@ -1,0 +1,256 @@
+#include "form/problem.hpp"
+
+#include "base/error.hpp"
+#include "base/timer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace amontons {
+
+/// Puts blocks into a PETSc matrix, leaving out rows and columns of prescribed equations.
+class Problem::MatrixTangent : public Tangent {
+ public:
+  MatrixTangent(const Problem& problem, Mat matrix) : problem_(problem), matrix_(matrix) {}
+  void add(std::span<const PetscInt> equations, std::span<const double> block) override {
+    rows_.resize(equations.size());
+    for (std::size_t i = 0; i < equations.size(); ++i) rows_[i] = dropped(equations[i]) ? -1 : equations[i];
+    const auto size = static_cast<PetscInt>(rows_.size());
+    AMT_PETSC(MatSetValues(matrix_, size, rows_.data(), size, rows_.data(), block.data(), ADD_VALUES));
+  }
+
+ private:
+  bool dropped(PetscInt equation) const {
+    const PetscInt local = equation - problem_.layout_.first_equation();
+    if (local >= 0 && local < problem_.layout_.num_owned()) return problem_.prescribed_flags_[local] != 0;
+    return std::binary_search(problem_.foreign_prescribed_.begin(), problem_.foreign_prescribed_.end(), equation);
+  }
+
+  const Problem& problem_;
+  Mat matrix_;
+  std::vector<PetscInt> rows_;
+};
+
+Problem::Problem(const DofLayout& layout, std::vector<std::unique_ptr<Form>> forms,
+                 std::vector<PrescribedDisplacement> prescribed)
+    : layout_(layout), forms_(std::move(forms)), prescribed_(std::move(prescribed)), raw_(layout.new_vector()),
+      displacement_(std::size_t(layout.mesh().num_local()) * layout.dim()) {
+  find_prescribed();
+}
+
+void Problem::find_prescribed() {
+  const auto& mesh = layout_.mesh();
+  prescribed_flags_.assign(layout_.num_owned(), 0);
+  const auto& tied = layout_.tied();
+  std::vector<PetscInt> tied_equations;
+  for (std::size_t i = 0; i < tied.size(); ++i) tied_equations.push_back(layout_.tied_equation(i));
+  together(comm(), [&] {
+    for (const auto& condition : prescribed_)
+      for (const auto node : mesh.node_groups.at(condition.group)) {
+        const PetscInt equation = layout_.equation(node, condition.component);
+        const auto clash = std::find(tied_equations.begin(), tied_equations.end(), equation);
+        if (clash != tied_equations.end())
+          throw UserError("boundary: the groups '" + condition.group + "' (displacement " + "xyz"[condition.component] +
+                          ") and '" + tied[clash - tied_equations.begin()].group +
+                          "' (resultant in the same direction) share a node; a node cannot be prescribed and moved by a "
+                          "force at once. Take the shared nodes out of one of the groups.");
+        if (node < mesh.num_owned) prescribed_flags_[equation - layout_.first_equation()] = 1;
+      }
+  });
+  for (PetscInt i = 0; i < layout_.num_owned(); ++i)
+    if (prescribed_flags_[i]) prescribed_equations_.push_back(layout_.first_equation() + i);
+}
+
+bool Problem::tangent_is_symmetric() const {
+  return std::all_of(forms_.begin(), forms_.end(), [](const auto& form) { return form->tangent_is_symmetric(); });
+}
+
+bool Problem::any_rank(bool mine) const {
+  int any = mine ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, comm());
+  return any != 0;
+}
+
+void Problem::begin_increment(double time, Vec unknowns) {
+  time_ = time;
+  force_scale_ = 0.0;
+  first_guess_ = true;
+  const auto& mesh = layout_.mesh();
+  VecArray values(unknowns);
+  for (const auto& condition : prescribed_)
+    for (const auto node : mesh.node_groups.at(condition.group))
+      if (node < mesh.num_owned)
+        values[layout_.equation(node, condition.component) - layout_.first_equation()] =
+            condition.value(time, mesh.position(node));
+}
+
+void Problem::commit(Vec unknowns) {
+  const auto state = state_at(unknowns);
+  for (const auto& form : forms_) form->commit(state);
+}
+
+void Problem::roll_back() {
+  for (const auto& form : forms_) form->roll_back();
+}
+
+State Problem::state_at(Vec unknowns) {
+  layout_.gather_displacement(unknowns, displacement_);
+  return {.time = time_, .unknowns = unknowns, .displacement = displacement_, .first_guess = first_guess_};
+}
+
+void Problem::residual(Vec unknowns, Vec result) {
+  const auto state = state_at(unknowns);
+  AMT_PETSC(VecSet(raw_, 0.0));
+  Residual residual(layout_, raw_);
+  double largest = 0.0; // of the partial sums' squared norms on this rank
+  std::vector<double> squares(forms_.size(), 0.0);
+  for (std::size_t i = 0; i < forms_.size(); ++i) {
+    const Phase phase(forms_[i]->name());
+    forms_[i]->add_residual(state, residual);
+    for (const double force : residual.nodal()) squares[i] += force * force;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, squares.data(), static_cast<int>(squares.size()), MPI_DOUBLE, MPI_SUM, comm());
+  for (const double square : squares) largest = std::max(largest, square);
+  residual.finish();
+  AMT_PETSC(VecCopy(raw_, result));
+  {
+    VecArray values(result);
+    for (const PetscInt equation : prescribed_equations_) values[equation - layout_.first_equation()] = 0.0;
+  }
+  double norm = 0.0;
+  AMT_PETSC(VecNorm(raw_, NORM_2, &norm));
+  force_scale_ = std::max({force_scale_, std::sqrt(largest), norm});
+}
+
+std::vector<double> Problem::unbalanced_forces() const {
+  std::vector<double> forces(displacement_.size());
+  layout_.gather_displacement(raw_, forces);
+  return forces;
+}
+
+MatHandle Problem::new_matrix() {
+  MatHandle matrix;
+  AMT_PETSC(MatCreate(comm(), matrix.put()));
+  AMT_PETSC(MatSetSizes(matrix, layout_.num_owned(), layout_.num_owned(), PETSC_DETERMINE, PETSC_DETERMINE));
+  AMT_PETSC(MatSetType(matrix, MATAIJ));
+  if (layout_.num_extra() == 0) AMT_PETSC(MatSetBlockSize(matrix, layout_.dim()));
+  build_pattern(matrix);
+  return matrix;
+}
+
+void Problem::build_pattern(Mat matrix) {
+  const Phase phase("pattern");
+  Sparsity sparsity(layout_);
+  for (const auto& form : forms_) form->couple(sparsity);
+
+  // Which of the other ranks' equations that our forms touch are prescribed there?
+  const auto foreign = sparsity.foreign_equations();
+  VecHandle flags = layout_.new_vector(), ours;
+  {
+    VecArray values(flags);
+    for (PetscInt i = 0; i < values.size(); ++i) values[i] = prescribed_flags_[i];
+  }
+  const auto size = static_cast<PetscInt>(foreign.size());
+  AMT_PETSC(VecCreateSeq(PETSC_COMM_SELF, size, ours.put()));
+  IsHandle from;
+  AMT_PETSC(ISCreateGeneral(comm(), size, foreign.data(), PETSC_COPY_VALUES, from.put()));
+  ScatterHandle scatter;
+  AMT_PETSC(VecScatterCreate(flags, from, ours, nullptr, scatter.put()));
+  AMT_PETSC(VecScatterBegin(scatter, flags, ours, INSERT_VALUES, SCATTER_FORWARD));
+  AMT_PETSC(VecScatterEnd(scatter, flags, ours, INSERT_VALUES, SCATTER_FORWARD));
+  foreign_prescribed_.clear();
+  VecReader values(ours);
+  for (PetscInt i = 0; i < size; ++i)
+    if (values[i] != 0.0) foreign_prescribed_.push_back(foreign[i]);
+
+  sparsity.preallocate(matrix);
+  AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_TRUE));
+  pattern_ready_ = true;
+  constant_ready_ = tangent_ready_ = false;
+}
+
+template <class Selector>
+void Problem::add_tangents(const State& state, Mat matrix, Selector selected) {
+  MatrixTangent tangent(*this, matrix);
+  for (const auto& form : forms_)
+    if (selected(*form)) {
+      const Phase phase(form->name());
+      form->add_tangent(state, tangent);
+    }
+  const Phase phase("matrix");
+  AMT_PETSC(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+}
+
+/// The constant part with the whole pattern in place, kept inside the matrix (MatStoreValues) for later tangents.
+void Problem::assemble_constant(const State& state, Mat matrix) {
+  AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_TRUE));
+  add_tangents(state, matrix, [](const Form& form) { return form.tangent_is_constant(); });
+  // Prescribed and idle equations get the mean diagonal, so that they neither spoil the conditioning nor the scaling.
+  VecHandle diagonal = layout_.new_vector();
+  AMT_PETSC(MatGetDiagonal(matrix, diagonal));
+  double sums[2] = {0.0, 0.0};
+  {
+    VecReader values(diagonal);
+    for (PetscInt i = 0; i < values.size(); ++i)
+      if (values[i] != 0.0) {
+        sums[0] += std::abs(values[i]);
+        sums[1] += 1.0;
+      }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm());
+  diagonal_scale_ = sums[1] > 0.0 ? sums[0] / sums[1] : 1.0;
+  for (const auto& equations : {std::span<const PetscInt>(prescribed_equations_), std::span(layout_.idle_equations())})
+    for (const PetscInt equation : equations)
+      AMT_PETSC(MatSetValue(matrix, equation, equation, diagonal_scale_, ADD_VALUES));
+  // Zeros of the changing forms complete the pattern before the values are stored.
+  class Zeros : public Coupling {
+   public:
+    explicit Zeros(MatrixTangent& tangent) : tangent_(tangent) {}
+    void add(std::span<const PetscInt> equations) override {
+      zeros_.assign(equations.size() * equations.size(), 0.0);
+      tangent_.add(equations, zeros_);
+    }
+
+   private:
+    MatrixTangent& tangent_;
+    std::vector<double> zeros_;
+  };
+  MatrixTangent tangent(*this, matrix);
+  Zeros zeros(tangent);
+  for (const auto& form : forms_)
+    if (!form->tangent_is_constant()) form->couple(zeros);
+  AMT_PETSC(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_FALSE));
+  AMT_PETSC(MatStoreValues(matrix));
+  constant_ready_ = true;
+}
+
+bool Problem::tangent(Vec unknowns, Mat matrix) {
+  const auto state = state_at(unknowns);
+  bool coupling_changed = false, tangent_changed = false;
+  for (const auto& form : forms_) {
+    coupling_changed = form->coupling_changed(state) || coupling_changed;
+    tangent_changed = form->tangent_changed(state) || tangent_changed;
+  }
+  first_guess_ = false;
+  if (any_rank(coupling_changed)) build_pattern(matrix);
+  if (!any_rank(tangent_changed || !tangent_ready_)) return false;
+  if (constant_ready_) AMT_PETSC(MatRetrieveValues(matrix));
+  else assemble_constant(state, matrix);
+  add_tangents(state, matrix, [](const Form& form) { return !form.tangent_is_constant(); });
+  if (tangent_is_symmetric()) AMT_PETSC(MatSetOption(matrix, MAT_SYMMETRIC, PETSC_TRUE));
+  tangent_ready_ = true;
+  return true;
+}
+
+double Problem::stored_energy(Vec unknowns) {
+  const auto state = state_at(unknowns);
+  double energy = 0.0;
+  for (const auto& form : forms_) energy += form->stored_energy(state);
+  MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, comm());
+  return energy;
+}
+
+} // namespace amontons

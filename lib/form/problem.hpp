@@ -1,0 +1,91 @@
+// A Problem is a sum of forms with some displacements prescribed: all that a solver sees. It assembles residual and
+// tangent, keeps the matrix pattern, and remembers what need not be assembled again.
+#pragma once
+
+#include "base/expression.hpp"
+#include "form/form.hpp"
+#include "form/sparsity.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace amontons {
+
+/// A displacement component of all nodes of a group follows an expression of t, x, y, z (x, y, z: reference place).
+struct PrescribedDisplacement {
+  std::string group;
+  int component;
+  Expression value;
+};
+
+class Problem {
+ public:
+  /// Forms are added up in the order given. Collective.
+  Problem(const DofLayout& layout, std::vector<std::unique_ptr<Form>> forms,
+          std::vector<PrescribedDisplacement> prescribed);
+
+  const DofLayout& layout() const { return layout_; }
+  MPI_Comm comm() const { return layout_.mesh().comm; }
+  bool tangent_is_symmetric() const;
+
+  /// Starts an increment that ends at `time`: evaluates the prescribed displacements there and writes them into the
+  /// unknowns. Collective.
+  void begin_increment(double time, Vec unknowns);
+  /// Makes the unknowns the start of the next increment, or returns forms to the last such start. Collective.
+  void commit(Vec unknowns);
+  void roll_back();
+  double time() const { return time_; }
+
+  /// The state at `unknowns` (valid until the next call of any member). Collective.
+  State state_at(Vec unknowns);
+
+  /// Out-of-balance forces; zero in the equations of prescribed displacements, where unbalanced_forces() keeps the
+  /// reactions. Collective.
+  void residual(Vec unknowns, Vec result);
+  /// The last residual before prescribed equations were zeroed: reactions of the supports stand there. Ghosted nodal
+  /// values: num_local x dim. For tied groups the sum over the group stands at each of its nodes. Collective.
+  std::vector<double> unbalanced_forces() const;
+  Vec raw_residual() const { return raw_; }
+  /// Norm of the largest set of forces that met in any residual of this increment: what an out-of-balance force is
+  /// small against. Same on every rank.
+  double force_scale() const { return force_scale_; }
+
+  /// A matrix for the tangent. Collective.
+  MatHandle new_matrix();
+  /// Assembles the tangent at `unknowns`, only if it would differ from the last one; returns whether it did. The
+  /// pattern grows when a form asks for it. Collective.
+  bool tangent(Vec unknowns, Mat matrix);
+
+  /// Is this equation (owned by this rank) prescribed?
+  bool is_prescribed(PetscInt equation) const { return prescribed_flags_[equation - layout_.first_equation()] != 0; }
+  const std::vector<PrescribedDisplacement>& prescribed() const { return prescribed_; }
+  const std::vector<std::unique_ptr<Form>>& forms() const { return forms_; }
+  double stored_energy(Vec unknowns);
+
+ private:
+  class MatrixTangent;
+  void find_prescribed();
+  void build_pattern(Mat matrix);
+  void assemble_constant(const State& state, Mat matrix);
+  bool any_rank(bool mine) const;
+  template <class Selector>
+  void add_tangents(const State& state, Mat matrix, Selector selected);
+
+  const DofLayout& layout_;
+  std::vector<std::unique_ptr<Form>> forms_;
+  std::vector<PrescribedDisplacement> prescribed_;
+  std::vector<std::uint8_t> prescribed_flags_; // per owned equation
+  std::vector<PetscInt> prescribed_equations_; // owned, ascending
+  std::vector<PetscInt> foreign_prescribed_;   // other ranks' prescribed equations that local forms touch, ascending
+  VecHandle raw_;
+  std::vector<double> displacement_;
+  double time_ = 0.0;
+  double force_scale_ = 0.0;
+  double diagonal_scale_ = 1.0;
+  bool first_guess_ = false;
+  bool pattern_ready_ = false, constant_ready_ = false, tangent_ready_ = false;
+};
+
+} // namespace amontons

@@ -1,0 +1,139 @@
+#include "geometry/facet_map.hpp"
+
+#include "math/reference_element.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace amontons::facet {
+
+namespace {
+
+constexpr int largest = 9; // nodes of a surface facet
+/// Relative size below which a length or an area counts as zero.
+constexpr double degenerate = 1e-14;
+/// Distance in reference coordinates within which a point lies on an edge or a vertex.
+constexpr double on_border = 1e-12;
+
+/// Points of a lattice strictly inside the reference cell; finer for curved facets.
+std::vector<Xi> lattice(bool triangle, int divisions) {
+  std::vector<Xi> points;
+  if (triangle) {
+    for (int i = 1; i < divisions; ++i)
+      for (int j = 1; i + j < divisions; ++j)
+        points.emplace_back(double(i) / divisions, double(j) / divisions);
+  } else {
+    for (int i = 0; i < divisions; ++i)
+      for (int j = 0; j < divisions; ++j)
+        points.emplace_back((2.0 * i + 1.0) / divisions - 1.0, (2.0 * j + 1.0) / divisions - 1.0);
+  }
+  return points;
+}
+
+Feature feature_at(ElementType type, const Xi& xi) {
+  if (element_dim(type) == 1) return 1.0 - std::abs(xi[0]) <= on_border ? Feature::Vertex : Feature::Facet;
+  std::array<double, 4> sides{1.0 - xi[0], 1.0 + xi[0], 1.0 - xi[1], 1.0 + xi[1]};
+  if (is_triangle(type)) sides = {xi[0], xi[1], 1.0 - xi[0] - xi[1], 1.0};
+  const auto touched = std::count_if(sides.begin(), sides.end(), [](double side) { return side <= on_border; });
+  return touched == 0 ? Feature::Facet : touched == 1 ? Feature::Edge : Feature::Vertex;
+}
+
+} // namespace
+
+double outside(ElementType type, const Xi& xi) {
+  if (is_triangle(type)) return std::max({-xi[0], -xi[1], xi[0] + xi[1] - 1.0});
+  return std::max(std::abs(xi[0]), std::abs(xi[1])) - 1.0;
+}
+
+Xi clamped(ElementType type, Xi xi) {
+  if (!is_triangle(type)) return xi.cwiseMax(-1.0).cwiseMin(1.0);
+  xi = xi.cwiseMax(0.0);
+  const double sum = xi.sum();
+  if (sum > 1.0) xi = {xi[0] / sum, 1.0 - xi[0] / sum}; // the two then add up to 1 exactly
+  return xi;
+}
+
+Eigen::Vector3d Surface::position(const Xi& xi) const {
+  std::array<double, largest> values;
+  const int count = num_nodes(type);
+  shape_values(type, std::span(xi.data(), 2), std::span(values).first(count));
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  for (int i = 0; i < count; ++i)
+    result += values[i] * node(i);
+  return result;
+}
+
+Tangents Surface::tangents(const Xi& xi) const {
+  std::array<double, 2 * largest> gradients;
+  const int count = num_nodes(type);
+  shape_gradients(type, std::span(xi.data(), 2), std::span(gradients).first(2 * std::size_t(count)));
+  Tangents result = Tangents::Zero();
+  for (int i = 0; i < count; ++i) {
+    result.col(0) += gradients[2 * i] * node(i);
+    result.col(1) += gradients[2 * i + 1] * node(i);
+  }
+  return result;
+}
+
+Eigen::Matrix3d Surface::second_derivatives(const Xi& xi) const {
+  std::array<double, 4 * largest> hessians;
+  const int count = num_nodes(type);
+  shape_hessians(type, std::span(xi.data(), 2), std::span(hessians).first(4 * std::size_t(count)));
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < count; ++i) {
+    result.col(0) += hessians[4 * i] * node(i);
+    result.col(1) += hessians[4 * i + 1] * node(i);
+    result.col(2) += hessians[4 * i + 3] * node(i);
+  }
+  return result;
+}
+
+double Surface::extent() const {
+  Eigen::Vector3d low = node(0), high = node(0);
+  for (int i = 1; i < num_vertices(type); ++i) {
+    low = low.cwiseMin(node(i));
+    high = high.cwiseMax(node(i));
+  }
+  return (high - low).maxCoeff();
+}
+
+Curve<2> segment_curve(ElementType type, std::span<const double> nodes) {
+  const auto node = [&](std::size_t a) { return Point<2>(nodes[2 * a], nodes[2 * a + 1]); };
+  if (type == ElementType::Segment2) return curve_through<2>(node(0), node(1), nullptr);
+  const Point<2> middle = node(2);
+  return curve_through<2>(node(0), node(1), &middle);
+}
+
+Projection landed(ElementType type, std::span<const double> nodes, std::span<const double> x, const Xi& xi) {
+  Projection result;
+  result.xi = {xi[0], xi[1]};
+  result.feature = feature_at(type, xi);
+  double size = 0.0; // of the measure of a facet with this extent
+  if (element_dim(type) == 1) {
+    const Curve<2> curve = segment_curve(type, nodes);
+    const Point<2> point = curve.position(xi[0]);
+    result.point = {point[0], point[1], 0.0};
+    size = curve.b.norm() + curve.c.norm();
+  } else {
+    const Surface surface{type, nodes};
+    const Eigen::Vector3d point = surface.position(xi);
+    result.point = {point[0], point[1], point[2]};
+    size = surface.extent() * surface.extent();
+  }
+  double distance2 = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    distance2 += (x[i] - result.point[i]) * (x[i] - result.point[i]);
+  result.distance = std::sqrt(distance2);
+  const std::span<const double> place(result.xi.data(), std::size_t(element_dim(type)));
+  result.found = facet_normal(type, nodes, place, result.normal) > degenerate * size;
+  return result;
+}
+
+std::span<const Xi> starts(ElementType type) {
+  static const std::vector<Xi> coarse = lattice(false, 3), fine = lattice(false, 6), triangle = lattice(true, 9);
+  if (is_triangle(type)) return triangle;
+  return type == ElementType::Quadrilateral4 ? coarse : fine;
+}
+
+} // namespace amontons::facet

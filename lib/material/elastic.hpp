@@ -1,0 +1,39 @@
+// Linear isotropic elasticity, pointwise: parameters, constants, stress, energy and moduli as pure functions of
+// numbers.
+#pragma once
+
+#include "material/law.hpp"
+#include "math/tensor.hpp"
+
+namespace amontons {
+
+/// Parameters as a user knows them.
+struct Elastic {
+  double young;   // E > 0, unit of stress
+  double poisson; // -1 < nu < 1/2
+};
+
+/// The constants with which σ = λ tr(ε) 1 + 2 G ε holds in the given space. Plane stress: σ_zz = 0 condenses ε_zz out,
+/// which leaves the in-plane law with λ* = 2 λ G / (λ + 2 G) = E nu / (1 - nu²).
+/// Throws UserError for parameters outside their range.
+Lame lame_constants(const Elastic& material, Space space);
+
+/// σ(ε). In plane stress ε_zz is ignored and σ_zz = 0.
+template <int dim>
+Stress<dim> elastic_stress(const Lame& lame, Space space, const Strain<dim>& strain);
+
+/// ½ σ : ε, energy per volume.
+template <int dim>
+double elastic_energy(const Lame& lame, Space space, const Strain<dim>& strain);
+
+/// dσ/dε with engineering shear strains.
+template <int dim>
+Moduli<dim> elastic_moduli(const Lame& lame, Space space);
+
+/// ε_zz = -nu / (1 - nu) (ε_xx + ε_yy) in plane stress.
+double plane_stress_zz_strain(const Elastic& material, double xx, double yy);
+
+/// The law of this material for forms in `space`.
+BulkLawPtr make_law(const Elastic& material, Space space);
+
+} // namespace amontons

@@ -1,0 +1,184 @@
+#include "mesh/gmsh_session.hpp"
+
+#include "base/error.hpp"
+#include "mesh/geo_script.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gmsh.h>
+#include <unistd.h>
+
+namespace amontons {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string in_quotes(const std::string& text) { return "'" + text + "'"; }
+
+/// What gmsh has logged as errors since the log was last emptied, each once.
+std::vector<std::string> logged_errors() {
+  std::vector<std::string> log, errors;
+  gmsh::logger::get(log);
+  const std::string mark = "Error: ";
+  for (const auto& line : log)
+    if (line.starts_with(mark) && std::find(errors.begin(), errors.end(), line.substr(mark.size())) == errors.end())
+      errors.push_back(line.substr(mark.size()));
+  return errors;
+}
+
+/// The names in the $PhysicalNames section, which is text and near the top in every version and encoding of the format.
+DeclaredGroups physical_names(const std::string& msh_file) {
+  DeclaredGroups groups;
+  std::ifstream stream(msh_file);
+  std::string line;
+  while (std::getline(stream, line) && !line.starts_with("$PhysicalNames"))
+    if (line.starts_with("$Nodes")) return groups;
+  std::getline(stream, line);
+  while (std::getline(stream, line) && !line.starts_with("$")) {
+    const auto begin = line.find('"'), end = line.rfind('"');
+    if (begin != std::string::npos && end > begin)
+      groups.insert({std::atoi(line.c_str()), line.substr(begin + 1, end - begin - 1)});
+  }
+  return groups;
+}
+
+/// gmsh's API does not tell of physical groups without entities, but the files that it writes do.
+DeclaredGroups names_known_to_gmsh(GmshSession& session) {
+  std::string name = (fs::temp_directory_path() / "amontons_names_XXXXXX.msh").string();
+  const int descriptor = mkstemps(name.data(), 4);
+  if (descriptor < 0)
+    throw UserError("No temporary file can be made in " + in_quotes(fs::temp_directory_path().string()) +
+                    "; make room there or set TMPDIR to a folder that can be written to.");
+  close(descriptor);
+  session.run("The physical names of the mesh cannot be written to " + in_quotes(name), [&] { gmsh::write(name); });
+  auto groups = physical_names(name);
+  fs::remove(name);
+  return groups;
+}
+
+void check_parameters(const MeshSource& source) {
+  const auto known = geo_parameters(source.file);
+  std::vector<std::string> messages;
+  for (const auto& [name, value] : source.parameters) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    std::string message = "Mesh file " + in_quotes(source.file) + " has no parameter " + in_quotes(name);
+    if (const auto near = nearest_match(name, known); !near.empty())
+      message += "; did you mean " + in_quotes(near) + "?";
+    message += known.empty() ? "; it has none: declare it there with DefineConstant[" + name + " = value];"
+                             : " Those that it declares with DefineConstant: " + join_names(known) + ".";
+    messages.push_back(message);
+  }
+  if (!messages.empty()) throw UserError(messages);
+}
+
+/// Throws unless the file is there, readable and looks like what its name says.
+void check_file(const MeshSource& source) {
+  const fs::path path(source.file);
+  const std::string file = "Mesh file " + in_quotes(source.file);
+  const auto extension = path.extension();
+  if (extension != ".geo" && extension != ".msh")
+    throw UserError(file +
+                    " has a name that ends neither in .geo nor in .msh; give a gmsh script (.geo) or a gmsh mesh "
+                    "(.msh, versions 2.2 and 4.1).");
+  if (!fs::is_regular_file(path))
+    throw UserError(file + " does not exist; check mesh: file (relative to the deck's folder).");
+  std::ifstream stream(path);
+  std::string line;
+  if (!stream || !std::getline(stream, line)) {
+    if (fs::file_size(path) == 0) throw UserError(file + " is empty; write the mesh again.");
+    throw UserError(file + " cannot be read; check its permissions.");
+  }
+  if (extension == ".geo") return check_parameters(source);
+  if (!line.starts_with("$"))
+    throw UserError(file +
+                    " is not a gmsh mesh: it does not begin with $MeshFormat; save it from gmsh as version 4.1.");
+  if (!source.parameters.empty())
+    throw UserError(file + " takes no parameters, only a .geo does; remove mesh: parameters.");
+}
+
+/// Orders of the elements (not points) of the model, ascending.
+std::set<int> element_orders() {
+  std::set<int> orders;
+  std::vector<int> types;
+  gmsh::model::mesh::getElementTypes(types);
+  for (const int type : types) {
+    std::string name;
+    int dim = 0, order = 0, nodes = 0, corners = 0;
+    std::vector<double> local;
+    gmsh::model::mesh::getElementProperties(type, name, dim, order, nodes, local, corners);
+    if (dim > 0) orders.insert(order);
+  }
+  return orders;
+}
+
+void generate_mesh(GmshSession& session, const MeshSource& source) {
+  const std::string failure = "Mesh file " + in_quotes(source.file) + " cannot be meshed";
+  const int dim = gmsh::model::getDimension();
+  if (dim < 2)
+    throw UserError("Mesh file " + in_quotes(source.file) +
+                    " makes no surface or volume to mesh; define a Surface or Volume in it.");
+  std::vector<int> types;
+  gmsh::model::mesh::getElementTypes(types, dim);
+  if (types.empty()) session.run(failure, [&] { gmsh::model::mesh::generate(dim); });
+}
+
+void bring_to_order(GmshSession& session, const MeshSource& source, std::optional<int> order) {
+  const auto orders = element_orders();
+  if (!order || orders.empty() || orders == std::set<int>{*order}) return;
+  session.run("Mesh file " + in_quotes(source.file) + " cannot be brought to order " + std::to_string(*order),
+              [&] { gmsh::model::mesh::setOrder(*order); });
+}
+
+} // namespace
+
+GmshSession::GmshSession(const std::map<std::string, double>& parameters) {
+  std::vector<std::string> arguments = {"amontons"};
+  for (const auto& [name, value] : parameters) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.17g", value);
+    arguments.insert(arguments.end(), {"-setnumber", name, number});
+  }
+  std::vector<char*> pointers;
+  for (auto& argument : arguments)
+    pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  gmsh::initialize(static_cast<int>(arguments.size()), pointers.data(), false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  // 1: stop meshing and only log; by default the API throws, also out of gmsh's OpenMP regions, which ends the program
+  gmsh::option::setNumber("General.AbortOnError", 1);
+  gmsh::logger::start();
+}
+
+GmshSession::~GmshSession() {
+  gmsh::logger::stop(); // the log would outlive the session
+  gmsh::finalize();
+}
+
+void GmshSession::fail_on_errors(const std::string& doing, const std::string& thrown) {
+  auto errors = logged_errors();
+  if (errors.empty() && !thrown.empty()) errors.push_back(thrown);
+  if (errors.empty()) return;
+  constexpr std::size_t most = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(errors.size(), most); ++i)
+    text += (i == 0 ? "" : "; ") + errors[i];
+  if (errors.size() > most) text += "; and " + std::to_string(errors.size() - most) + " more";
+  throw UserError(doing + ": gmsh reports: " + text + ". Open it in gmsh and mend it.");
+}
+
+DeclaredGroups load_model(GmshSession& session, const MeshSource& source) {
+  check_file(source);
+  const bool script = source.file.ends_with(".geo");
+  session.run("Mesh file " + in_quotes(source.file) + " cannot be read", [&] { gmsh::open(source.file); });
+  const auto groups = script ? names_known_to_gmsh(session) : physical_names(source.file);
+  if (script) generate_mesh(session, source);
+  const auto orders = element_orders();
+  if (script || (!orders.empty() && *orders.rbegin() <= 2))
+    bring_to_order(session, source, script ? source.order.value_or(1) : source.order);
+  return groups;
+}
+
+} // namespace amontons

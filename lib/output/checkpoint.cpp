@@ -1,0 +1,211 @@
+#include "output/checkpoint.hpp"
+
+#include "base/error.hpp"
+#include "output/hdf5_file.hpp"
+#include "output/key_match.hpp"
+#include "output/text_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <numeric>
+
+namespace amontons {
+
+namespace {
+
+constexpr PetscInt format_version = 1;
+const std::string root = "/checkpoint";
+
+/// FNV-1a: enough to tell two decks apart, and the same on every machine.
+std::uint64_t hash_of(const std::string& text) {
+  std::uint64_t hash = 0xCBF29CE484222325ull;
+  for (const char c : text)
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
+  return hash;
+}
+
+/// The sum of all nodes' keys, modulo 2^64: the same for every partition of a mesh. Collective.
+std::uint64_t key_sum(const Mesh& mesh) {
+  const std::uint64_t mine = std::accumulate(mesh.keys.begin(), mesh.keys.begin() + mesh.num_owned, std::uint64_t(0));
+  std::uint64_t sum = 0;
+  MPI_Allreduce(&mine, &sum, 1, MPI_UINT64_T, MPI_SUM, mesh.comm);
+  return sum;
+}
+
+/// HDF5 through PETSc knows doubles and 32-bit integers; halves of a key are exact in doubles.
+std::vector<double> halves(std::span<const std::uint64_t> keys) {
+  std::vector<double> values;
+  values.reserve(2 * keys.size());
+  for (const auto key : keys) {
+    values.push_back(double(key >> 32));
+    values.push_back(double(key & 0xFFFFFFFFull));
+  }
+  return values;
+}
+
+std::vector<std::uint64_t> joined(std::span<const double> values) {
+  std::vector<std::uint64_t> keys(values.size() / 2);
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    keys[i] = (std::uint64_t(values[2 * i]) << 32) | std::uint64_t(values[2 * i + 1]);
+  return keys;
+}
+
+std::string dataset(const char* kind, std::size_t i) { return root + "/" + kind + "_" + std::to_string(i); }
+/// Attributes that belong to dataset i: "nodal_0_name", "nodal_0_components" ...
+std::string attribute(const char* kind, std::size_t i, const char* what) {
+  return std::string(kind) + "_" + std::to_string(i) + "_" + what;
+}
+
+void write_contents(Hdf5File& file, const Mesh& mesh, const std::string& identity, const Checkpoint& checkpoint) {
+  file.write_attribute(root, "format", format_version);
+  file.write_attribute(root, "nodes", std::to_string(mesh.num_global));
+  file.write_attribute(root, "key_sum", std::to_string(key_sum(mesh)));
+  file.write_attribute(root, "identity", std::to_string(hash_of(identity)));
+  file.write_attribute(root, "time", checkpoint.time);
+  file.write_attribute(root, "step", PetscInt(checkpoint.step));
+  file.write_attribute(root, "increment", PetscInt(checkpoint.increment));
+  file.write_attribute(root, "next_increment", checkpoint.next_increment);
+  const auto owned = static_cast<std::size_t>(mesh.num_owned);
+  file.write(root + "/keys", 2, halves(std::span(mesh.keys).first(owned)));
+
+  file.write_attribute(root, "nodal_count", PetscInt(checkpoint.nodal.size()));
+  std::size_t i = 0;
+  for (const auto& [name, array] : checkpoint.nodal) {
+    file.write_attribute(root, attribute("nodal", i, "name"), name);
+    file.write_attribute(root, attribute("nodal", i, "components"), PetscInt(array.components));
+    file.write(dataset("nodal", i), array.components, std::span(array.values).first(owned * array.components));
+    ++i;
+  }
+
+  int rank = 0;
+  MPI_Comm_rank(mesh.comm, &rank);
+  file.write_attribute(root, "global_count", PetscInt(checkpoint.global.size()));
+  i = 0;
+  for (const auto& [name, values] : checkpoint.global) {
+    file.write_attribute(root, attribute("global", i, "name"), name);
+    file.write_attribute(root, attribute("global", i, "size"), PetscInt(values.size()));
+    file.write(dataset("global", i), 1, std::span(values).first(rank == 0 ? values.size() : 0));
+    ++i;
+  }
+}
+
+[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
+  throw UserError("The checkpoint " + path + " cannot be used: " + reason + ".");
+}
+
+/// Attributes are the same on all ranks, and so is what is thrown.
+void check_identity(Hdf5File& file, const Mesh& mesh, const std::string& path, const std::string& identity) {
+  if (!file.has_group(root)) refuse(path, "it is not a checkpoint of this program");
+  const auto format = file.read_integer(root, "format");
+  if (format != format_version)
+    refuse(path, "it has format " + std::to_string(format) + " and this version of the program reads format " +
+                     std::to_string(format_version) + ". Restart with the version that wrote it");
+  const std::string nodes = file.read_string(root, "nodes");
+  const std::string same_mesh =
+      ". Restart with the mesh, mesh parameters, order and refinement of the run that wrote it";
+  if (nodes != std::to_string(mesh.num_global))
+    refuse(path, "it was written on a mesh of " + nodes + " nodes and this one has " + std::to_string(mesh.num_global) +
+                     same_mesh);
+  if (file.read_string(root, "key_sum") != std::to_string(key_sum(mesh)))
+    refuse(path, "it was written on another mesh with the same number of nodes" + same_mesh);
+  if (file.read_string(root, "identity") != std::to_string(hash_of(identity)))
+    refuse(path, "it was written for another deck. Restart with the deck of the run that wrote it; only what "
+                 "does not describe the state (later steps, output, solver options) may change");
+}
+
+/// This rank's share of the rows of the file when it is cut evenly.
+struct Share {
+  std::int64_t first, size;
+};
+
+Share even_share(MPI_Comm comm, std::int64_t rows) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &ranks);
+  const std::int64_t first = rows * rank / ranks;
+  return {first, rows * (rank + 1) / ranks - first};
+}
+
+/// Values at the local nodes from those in the file's order. Collective.
+std::vector<double> picked(MPI_Comm comm, int components, std::vector<double> in_file, std::span<const PetscInt> rows) {
+  const auto num_rows = static_cast<PetscInt>(rows.size());
+  std::vector<double> values(rows.size() * components);
+  VecHandle from, to;
+  AMT_PETSC(VecCreateMPIWithArray(comm, components, static_cast<PetscInt>(in_file.size()), PETSC_DECIDE, in_file.data(),
+                                  from.put()));
+  AMT_PETSC(VecCreateSeqWithArray(PETSC_COMM_SELF, components, num_rows * components, values.data(), to.put()));
+  IsHandle index;
+  AMT_PETSC(ISCreateBlock(PETSC_COMM_SELF, components, num_rows, rows.data(), PETSC_USE_POINTER, index.put()));
+  ScatterHandle scatter;
+  AMT_PETSC(VecScatterCreate(from, index, to, nullptr, scatter.put()));
+  AMT_PETSC(VecScatterBegin(scatter, from, to, INSERT_VALUES, SCATTER_FORWARD));
+  AMT_PETSC(VecScatterEnd(scatter, from, to, INSERT_VALUES, SCATTER_FORWARD));
+  return values;
+}
+
+void read_nodal(Hdf5File& file, const Mesh& mesh, const std::string& path, Checkpoint& checkpoint) {
+  const Share share = even_share(mesh.comm, mesh.num_global);
+  const auto keys = joined(file.read(root + "/keys", 2, PetscInt(2 * share.size)));
+  const auto found = rows_of_keys(mesh.comm, keys, share.first, mesh.keys);
+  together(mesh.comm, [&] {
+    if (std::find(found.begin(), found.end(), -1) != found.end())
+      refuse(path, "it was written on another mesh with the same number of nodes");
+  });
+  const std::vector<PetscInt> rows(found.begin(), found.end());
+  const auto count = static_cast<std::size_t>(file.read_integer(root, "nodal_count"));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string name = file.read_string(root, attribute("nodal", i, "name"));
+    const int components = static_cast<int>(file.read_integer(root, attribute("nodal", i, "components")));
+    auto in_file = file.read(dataset("nodal", i), components, PetscInt(components * share.size));
+    checkpoint.nodal[name] = {components, picked(mesh.comm, components, std::move(in_file), rows)};
+  }
+}
+
+void read_global(Hdf5File& file, MPI_Comm comm, Checkpoint& checkpoint) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  const auto count = static_cast<std::size_t>(file.read_integer(root, "global_count"));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string name = file.read_string(root, attribute("global", i, "name"));
+    const PetscInt size = file.read_integer(root, attribute("global", i, "size"));
+    auto values = file.read(dataset("global", i), 1, rank == 0 ? size : 0);
+    values.resize(size);
+    MPI_Bcast(values.data(), static_cast<int>(size), MPI_DOUBLE, 0, comm);
+    checkpoint.global[name] = std::move(values);
+  }
+}
+
+} // namespace
+
+void write_checkpoint(const Mesh& mesh, const std::string& path, const std::string& identity,
+                      const Checkpoint& checkpoint) {
+  const std::string unfinished = path + ".unfinished";
+  on_root(mesh.comm, [&] {
+    if (!std::ofstream(unfinished, std::ios::trunc))
+      throw UserError("The checkpoint " + unfinished + " cannot be written. Choose another directory with --out.");
+  });
+  {
+    Hdf5File file(mesh.comm, unfinished, FileUse::Create);
+    write_contents(file, mesh, identity, checkpoint);
+  }
+  on_root(mesh.comm, [&] { rename_synchronized(unfinished, path); });
+}
+
+Checkpoint read_checkpoint(const Mesh& mesh, const std::string& path, const std::string& identity) {
+  on_root(mesh.comm, [&] {
+    if (!std::ifstream(path)) refuse(path, "there is no such file, or it may not be read");
+    if (!is_sound_hdf5(path)) refuse(path, "it is not an HDF5 file, or it is damaged");
+  });
+  Hdf5File file(mesh.comm, path, FileUse::Read);
+  check_identity(file, mesh, path, identity);
+  Checkpoint checkpoint;
+  checkpoint.time = file.read_double(root, "time");
+  checkpoint.step = static_cast<int>(file.read_integer(root, "step"));
+  checkpoint.increment = static_cast<int>(file.read_integer(root, "increment"));
+  checkpoint.next_increment = file.read_double(root, "next_increment");
+  read_nodal(file, mesh, path, checkpoint);
+  read_global(file, mesh.comm, checkpoint);
+  return checkpoint;
+}
+
+} // namespace amontons

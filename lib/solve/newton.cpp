@@ -1,0 +1,144 @@
+#include "solve/newton.hpp"
+
+#include "base/timer.hpp"
+
+#include <cmath>
+
+namespace amontons {
+
+namespace {
+
+/// Unknowns above which a displacement-only problem goes to CG with multigrid rather than to a factorization.
+constexpr PetscInt multigrid_from_2d = 1'000'000;
+constexpr PetscInt multigrid_from_3d = 200'000;
+
+std::string in_words(SNESConvergedReason reason, double relative) {
+  switch (reason) {
+  case SNES_DIVERGED_FNORM_NAN: return "the residual is not a number";
+  case SNES_DIVERGED_MAX_IT:
+    return "Newton's method used all its iterations; the out-of-balance force is still " + std::to_string(relative) +
+           " of the forces in play (-snes_max_it, smaller increments or `enforce: {uzawa: {}}` may help)";
+  case SNES_DIVERGED_LINEAR_SOLVE:
+    return "the linear solver failed: the tangent is singular (a body that nothing holds?) or, for an iterative solver, "
+           "the tolerance was not reached (-ksp_converged_reason tells; -pc_type lu is the robust choice)";
+  case SNES_DIVERGED_LINE_SEARCH: return "the line search found no decrease";
+  case SNES_DIVERGED_DTOL: return "the residual grew without bound";
+  case SNES_DIVERGED_FUNCTION_DOMAIN: return "the residual could not be evaluated";
+  case SNES_DIVERGED_FUNCTION_COUNT: return "too many residual evaluations";
+  case SNES_BREAKOUT_INNER_ITER: return "interrupted";
+  default: return std::string("SNES: ") + SNESConvergedReasons[reason];
+  }
+}
+
+} // namespace
+
+void default_option(const std::string& name, const std::string& value) {
+  PetscBool present = PETSC_FALSE;
+  AMT_PETSC(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &present));
+  if (!present) AMT_PETSC(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
+}
+
+std::string choose_linear_solver(const Problem& problem) {
+  const auto& layout = problem.layout();
+  const PetscInt size = layout.num_global();
+  const bool displacement_only = layout.num_extra() == 0;
+  const bool symmetric = problem.tangent_is_symmetric();
+  default_option("-snes_rtol", "1e-10");
+  default_option("-snes_max_it", "50");
+  default_option("-snes_linesearch_type", "basic");
+  if (displacement_only && size > (layout.dim() == 2 ? multigrid_from_2d : multigrid_from_3d)) {
+    default_option("-ksp_type", symmetric ? "cg" : "gmres");
+    default_option("-ksp_rtol", "1e-8");
+    default_option("-ksp_max_it", "2000");
+    default_option("-pc_type", "gamg");
+    return symmetric ? "conjugate gradients with smoothed-aggregation multigrid" : "GMRES with smoothed-aggregation multigrid";
+  }
+  default_option("-ksp_type", "preonly");
+  default_option("-pc_type", symmetric ? "cholesky" : "lu");
+  default_option("-pc_factor_mat_solver_type", "mumps");
+  default_option("-mat_mumps_icntl_7", "3");   // SCOTCH; MUMPS falls back by itself where it was built without
+  default_option("-mat_mumps_icntl_14", "40"); // spare workspace for delayed pivots of the saddle point, per cent
+  return symmetric ? "MUMPS, symmetric factorization" : "MUMPS, unsymmetric factorization";
+}
+
+Newton::Newton(Problem& problem, std::function<bool()> interrupted)
+    : problem_(problem), interrupted_(std::move(interrupted)), matrix_(problem.new_matrix()),
+      residual_(problem.layout().new_vector()) {
+  AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
+  AMT_PETSC(SNESSetFunction(snes_, residual_, evaluate_residual, this));
+  AMT_PETSC(SNESSetJacobian(snes_, matrix_, matrix_, evaluate_tangent, this));
+  AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
+  AMT_PETSC(SNESSetFromOptions(snes_));
+  if (problem.layout().num_extra() == 0) set_near_null_space();
+}
+
+/// Rigid-body modes, which multigrid needs to coarsen elasticity well.
+void Newton::set_near_null_space() {
+  const auto& mesh = problem_.layout().mesh();
+  VecHandle places = problem_.layout().new_vector();
+  {
+    VecArray values(places);
+    for (std::int32_t node = 0; node < mesh.num_owned; ++node)
+      for (int c = 0; c < mesh.dim; ++c) values[node * mesh.dim + c] = mesh.position(node)[c];
+  }
+  NullSpaceHandle modes;
+  AMT_PETSC(MatNullSpaceCreateRigidBody(places, modes.put()));
+  AMT_PETSC(MatSetNearNullSpace(matrix_, modes));
+}
+
+PetscErrorCode Newton::evaluate_residual(SNES, Vec unknowns, Vec result, void* self) {
+  auto& newton = *static_cast<Newton*>(self);
+  return guarded(newton.kept_, [&] { newton.problem_.residual(unknowns, result); });
+}
+
+PetscErrorCode Newton::evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, void* self) {
+  auto& newton = *static_cast<Newton*>(self);
+  return guarded(newton.kept_, [&] {
+    if (newton.problem_.tangent(unknowns, matrix)) ++newton.factorizations_;
+  });
+}
+
+/// Converged when the out-of-balance force is small (snes_rtol) against the forces that are balanced, which, unlike the
+/// first residual of an increment, do not become small when the guess is good.
+PetscErrorCode Newton::test_convergence(SNES snes, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
+                                        SNESConvergedReason* reason, void* self) {
+  auto& newton = *static_cast<Newton*>(self);
+  return guarded(newton.kept_, [&] {
+    PetscReal atol = 0.0, rtol = 0.0;
+    PetscInt max_iterations = 0;
+    AMT_PETSC(SNESGetTolerances(snes, &atol, &rtol, nullptr, &max_iterations, nullptr));
+    if (iteration == 0) newton.first_norm_ = norm;
+    *reason = SNES_CONVERGED_ITERATING;
+    if (newton.interrupted_ && newton.interrupted_()) *reason = SNES_BREAKOUT_INNER_ITER;
+    else if (!std::isfinite(norm)) *reason = SNES_DIVERGED_FNORM_NAN;
+    else if (norm <= rtol * newton.problem_.force_scale() || norm == 0.0) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+    else if (iteration >= max_iterations) *reason = SNES_DIVERGED_MAX_IT;
+  });
+}
+
+SolveOutcome Newton::solve(Vec unknowns) {
+  factorizations_ = 0;
+  kept_ = nullptr;
+  const Phase phase("linear solver"); // the phases of forms inside stop this clock
+  const PetscErrorCode code = SNESSolve(snes_, nullptr, unknowns);
+  if (kept_) std::rethrow_exception(kept_);
+  AMT_PETSC(code);
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscInt newton = 0, linear = 0;
+  double norm = 0.0;
+  AMT_PETSC(SNESGetConvergedReason(snes_, &reason));
+  AMT_PETSC(SNESGetIterationNumber(snes_, &newton));
+  AMT_PETSC(SNESGetLinearSolveIterations(snes_, &linear));
+  AMT_PETSC(SNESGetFunctionNorm(snes_, &norm));
+  SolveOutcome outcome;
+  outcome.converged = reason > 0 && reason != SNES_BREAKOUT_INNER_ITER;
+  outcome.newton = static_cast<int>(newton);
+  outcome.linear = static_cast<int>(linear);
+  outcome.factorizations = factorizations_;
+  const double scale = problem_.force_scale();
+  outcome.residual = scale > 0.0 ? norm / scale : 0.0;
+  outcome.reason = outcome.converged ? "converged" : in_words(reason, outcome.residual);
+  return outcome;
+}
+
+} // namespace amontons

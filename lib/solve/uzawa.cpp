@@ -1,0 +1,72 @@
+#include "solve/uzawa.hpp"
+
+#include <cmath>
+
+namespace amontons {
+
+UzawaLoop::UzawaLoop(Problem& problem, Newton& newton, MultiplierSet& multipliers, double tolerance, int max_iterations)
+    : problem_(problem), newton_(newton), multipliers_(multipliers), tolerance_(tolerance),
+      current_(multipliers.new_vector()), change_(multipliers.new_vector()), updated_(multipliers.new_vector()) {
+  AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
+  AMT_PETSC(SNESSetOptionsPrefix(snes_, "uzawa_"));
+  AMT_PETSC(SNESSetType(snes_, SNESANDERSON));
+  AMT_PETSC(SNESSetFunction(snes_, change_, evaluate, this));
+  AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
+  AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, max_iterations, PETSC_DEFAULT));
+  AMT_PETSC(SNESSetFromOptions(snes_));
+}
+
+/// The change λ − λ⁺ that one Uzawa step makes; zero at the solution.
+PetscErrorCode UzawaLoop::evaluate(SNES snes, Vec multipliers, Vec change, void* self) {
+  auto& loop = *static_cast<UzawaLoop*>(self);
+  return guarded(loop.kept_, [&] {
+    loop.multipliers_.set(multipliers);
+    const auto outcome = loop.newton_.solve(loop.unknowns_);
+    loop.inner_.newton += outcome.newton;
+    loop.inner_.linear += outcome.linear;
+    loop.inner_.factorizations += outcome.factorizations;
+    loop.inner_.residual = outcome.residual;
+    loop.inner_.converged = outcome.converged;
+    loop.inner_.reason = outcome.reason;
+    if (!outcome.converged) AMT_PETSC(SNESSetFunctionDomainError(snes));
+    loop.multipliers_.updated(loop.problem_.state_at(loop.unknowns_), loop.updated_);
+    AMT_PETSC(VecWAXPY(change, -1.0, loop.updated_, multipliers));
+    AMT_PETSC(VecNorm(loop.updated_, NORM_2, &loop.norm_));
+  });
+}
+
+PetscErrorCode UzawaLoop::test_convergence(SNES snes, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
+                                           SNESConvergedReason* reason, void* self) {
+  auto& loop = *static_cast<UzawaLoop*>(self);
+  return guarded(loop.kept_, [&] {
+    PetscInt max_iterations = 0;
+    AMT_PETSC(SNESGetTolerances(snes, nullptr, nullptr, nullptr, &max_iterations, nullptr));
+    *reason = SNES_CONVERGED_ITERATING;
+    if (!std::isfinite(norm)) *reason = SNES_DIVERGED_FNORM_NAN;
+    else if (norm <= loop.tolerance_ * loop.norm_) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+    else if (iteration >= max_iterations) *reason = SNES_DIVERGED_MAX_IT;
+  });
+}
+
+SolveOutcome UzawaLoop::solve(Vec unknowns) {
+  unknowns_ = unknowns;
+  inner_ = {};
+  kept_ = nullptr;
+  multipliers_.get(current_);
+  const PetscErrorCode code = SNESSolve(snes_, nullptr, current_);
+  if (kept_) std::rethrow_exception(kept_);
+  AMT_PETSC(code);
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscInt iterations = 0;
+  AMT_PETSC(SNESGetConvergedReason(snes_, &reason));
+  AMT_PETSC(SNESGetIterationNumber(snes_, &iterations));
+  SolveOutcome outcome = inner_;
+  outcome.outer = static_cast<int>(iterations) + 1;
+  outcome.converged = inner_.converged && reason > 0;
+  if (inner_.converged && reason <= 0)
+    outcome.reason = "the Uzawa loop did not settle the multipliers in " + std::to_string(outcome.outer) +
+                     " iterations (enforce.uzawa.max_iterations; a larger alpha converges in fewer)";
+  return outcome;
+}
+
+} // namespace amontons

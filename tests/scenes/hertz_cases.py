@@ -1,0 +1,143 @@
+"""Hertz contact of a round and a flat body: pressure, width and force against the half-space solution."""
+import math
+
+import numpy as np
+
+import common_checks
+import references
+
+RADIUS = {"hertz_2d": 50.0, "hertz_axisymmetric": 50.0, "hertz_3d": 40.0}
+
+
+def materials_of(results, *bodies):
+    laws = [results.deck["materials"][results.deck["bodies"][body]]["elastic"] for body in bodies]
+    return [(float(law["E"]), float(law["nu"])) for law in laws]
+
+
+class Hertz:
+    """What a run says next to what Hertz says for the whole contact force that the run found."""
+
+    def __init__(self, scene, results):
+        self.results, self.scene = results, scene
+        self.line = scene == "hertz_2d"
+        self.up = 2 if scene == "hertz_3d" else 1
+        self.round_body = "sphere" if scene == "hertz_3d" else "indenter"
+        # the part modelled: half of the cylinder, the whole sphere, a quarter of the sphere
+        self.share = {"hertz_2d": 0.5, "hertz_axisymmetric": 1.0, "hertz_3d": 0.25}[scene]
+        self.force = results.force("interface") / self.share
+        self.materials = materials_of(results, self.round_body, "block")
+        self.contact = references.line_contact if self.line else references.sphere_contact
+        self.a, self.p0 = self.contact(self.force, RADIUS[scene], references.contact_modulus(*self.materials))
+        points = results.points["interface"]
+        self.r = np.hypot(points["places"][:, 0], points["places"][:, 1] if self.up == 2 else 0.0)
+        self.pressure, self.weight = points["pressure"].ravel(), points["weight"].ravel()
+
+    def width(self):
+        """Half-width or radius of the contact from the second moment of the pressure: <x^2> = a^2 / 4 for the half-ellipse
+        over a line, <r^2> = 2 a^2 / 5 over a circle. Not tied to the mesh's size as the last node in contact is."""
+        share = self.pressure * self.weight
+        second = np.sum(share * self.r**2) / np.sum(share)
+        return math.sqrt(second / (0.25 if self.line else 0.4))
+
+    def pressure_error(self):
+        """Relative L2 error of the nodal pressure (linear between nodes, in 2D), integrated over the slave surface with
+        five Gauss points a facet."""
+        surface = self.results.surface["interface"]
+        x, pressure = surface["places"][:, 0], surface["pressure"].ravel()
+        order = np.argsort(x)
+        x, pressure = x[order], pressure[order]
+        place, weight = np.polynomial.legendre.leggauss(5)
+        half = 0.5 * np.diff(x)[:, None]
+        at = 0.5 * (x[1:] + x[:-1])[:, None] + half * place
+        exact = references.hertz_pressure(at, self.a, self.p0)
+        error = np.interp(at, x, pressure) - exact
+        return math.sqrt(np.sum(half * weight * error**2) / np.sum(half * weight * exact**2))
+
+    def force_from_approach(self, depth):
+        """The force that Hertz needs for the approach seen between two nodes on the axis, near `depth` in each body."""
+        places = self.results.places
+        across = [i for i in range(3) if i != self.up]
+        depths, moved = [], []
+        for body, side in ((self.round_body, 1.0), ("block", -1.0)):
+            on_axis = self.results.in_body(body) & np.all(np.abs(places[:, across]) < 1e-9, axis=1)
+            candidates = np.flatnonzero(on_axis)
+            node = candidates[np.argmin(np.abs(side * places[candidates, self.up] - depth))]
+            overlap = self.results.deck["mesh"]["parameters"]["overlap"]
+            depths.append(side * places[node, self.up] + (overlap if side > 0 else 0.0))
+            moved.append(self.results.nodal["displacement"][node, self.up])
+        approach = moved[1] - moved[0] + overlap
+        strain = references.line_axis_strain if self.line else references.sphere_axis_strain
+        return references.force_of_approach(
+            approach, self.contact, strain, RADIUS[self.scene], self.materials, depths
+        )
+
+    def load(self):
+        """The whole force that the deck asks for at the end."""
+        text = next(item["resultant"] for item in self.results.deck["boundary"] if "resultant" in item)
+        return -float(next(iter(text.values())).replace("*t", "")) / self.share
+
+
+def check(bench, scene, changes, width, peak, force):
+    """One run against Hertz, with the tolerances of width, peak pressure and force."""
+    hertz = Hertz(scene, bench.run(scene, changes))
+    bench.close("contact force against the load", hertz.force, hertz.load(), 1e-6)
+    history = hertz.results.history[f"contact_interface_force_{'xyz'[hertz.up]}"][-1] / hertz.share
+    bench.close("contact force in history.csv", history, hertz.force, 1e-10)
+    bench.close("contact half-width", hertz.width(), hertz.a, width)
+    bench.close("peak pressure", hertz.results.peak_pressure("interface"), hertz.p0, peak)
+    bench.close("force by the approach", hertz.force_from_approach(5.0 * hertz.a), hertz.force, force)
+
+
+def reference_2d(bench):
+    check(bench, "hertz_2d", {}, 0.01, 0.01, 0.01)
+
+
+def convergence_2d(bench):
+    """First order or better of the pressure in L2 over three meshes."""
+    errors = []
+    for h in (0.1, 0.05, 0.025):
+        errors.append(Hertz("hertz_2d", bench.run("hertz_2d", {"mesh.parameters.h": h})).pressure_error())
+        print(f"     cell size {h}: L2 error of the pressure {errors[-1]:.3e}")
+    order = math.log2(errors[0] / errors[-1]) / 2.0
+    bench.below("1 - order of convergence in L2", 1.0 - order, 0.0)
+    bench.below("L2 error on the finest mesh", errors[-1], 0.01)
+
+
+def second_order_2d(bench):
+    """Second-order cells, twice as large."""
+    check(bench, "hertz_2d", {"mesh.order": 2, "mesh.parameters.h": 0.1}, 0.01, 0.01, 0.01)
+
+
+def exchanged_2d(bench):
+    """The block as slave; the same contact within the discretization error."""
+    changes = {"contact.0.slave": "block_top", "contact.0.master": "indenter_rim"}
+    check(bench, "hertz_2d", changes, 0.01, 0.01, 0.01)
+
+
+def reference_axisymmetric(bench):
+    check(bench, "hertz_axisymmetric", {}, 0.01, 0.02, 0.01)
+
+
+def reference_3d(bench):
+    check(bench, "hertz_3d", {}, 0.01, 0.02, 0.01)
+
+
+CASES = {
+    "hertz_2d": {
+        "reference": reference_2d,
+        "convergence": convergence_2d,
+        "second_order": second_order_2d,
+        "exchanged": exchanged_2d,
+        "formulations": lambda bench: common_checks.formulations_agree(bench, "hertz_2d"),
+        "ranks": lambda bench: common_checks.ranks_agree(bench, "hertz_2d"),
+    },
+    "hertz_axisymmetric": {
+        "reference": reference_axisymmetric,
+        "formulations": lambda bench: common_checks.formulations_agree(bench, "hertz_axisymmetric"),
+    },
+    "hertz_3d": {
+        "reference": reference_3d,
+        "formulations": lambda bench: common_checks.formulations_agree(bench, "hertz_3d", {"mesh.parameters.n": 6}),
+        "ranks": lambda bench: common_checks.ranks_agree(bench, "hertz_3d", {"mesh.parameters.n": 6}),
+    },
+}

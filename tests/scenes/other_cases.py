@@ -1,0 +1,88 @@
+"""Flat punch, stack of discs, rigid shapes."""
+import numpy as np
+
+import common_checks
+import references
+
+
+def flat_punch(bench):
+    """Pressure within 3 % away from the edge, rising towards the edge without oscillation."""
+    results = bench.run("flat_punch")
+    surface = results.surface["punch"]
+    order = np.argsort(surface["places"][:, 0])
+    x, pressure = surface["places"][order, 0], surface["pressure"].ravel()[order]
+    a = results.deck["mesh"]["parameters"]["a"]
+    exact = references.flat_punch_pressure(x[x < 0.8 * a], 2.0 * results.force("punch"), a)
+    bench.below("largest error for x < 0.8 a", np.abs(pressure[x < 0.8 * a] / exact - 1.0).max(), 0.03)
+    # The exact pressure rises everywhere: any fall between neighbouring nodes would be an oscillation. The mean over a cell
+    # next to the edge is finite, so the last node's value must be of its size: integral of p over (a - h, a) / h.
+    bench.below("largest fall between neighbours / mean pressure", -np.diff(pressure).min() / pressure.mean(), 0.0)
+    h = x[-1] - x[-2]
+    mean = 2.0 * results.force("punch") / np.pi * (np.pi / 2.0 - np.arcsin(1.0 - h / a)) / h
+    bench.below("pressure at the edge / mean pressure of the last cell", pressure[-1] / mean, 2.0)
+
+
+def disc_stack(bench):
+    """Forces between discs, walls, floor and lid against a closed form; balance of the free bodies."""
+    results = bench.run("disc_stack")
+    parameters = results.deck["mesh"]["parameters"]
+    columns, rows = parameters["columns"], parameters["rows"]
+    law = results.deck["materials"]["polymer"]["elastic"]
+    lid = 0.4
+    across = 2.0 * parameters["interference"]
+    down = across + lid / rows
+    Q, P = references.boxed_disc_forces(across, down, parameters["R"], law["E"], law["nu"])
+    for pair in results.points:
+        is_level = pair in ("floor", "lid") or pair.startswith("rows")
+        exact = columns * P if is_level else rows * Q
+        bench.close(f"force of {pair}", results.force(pair), exact, 0.02)
+    for first, second in (("floor", "lid"), ("left_wall", "right_wall")):
+        difference = abs(results.force(first) - results.force(second)) / results.force(first)
+        bench.below(f"{first} against {second}", difference, 1e-6)
+    _, p0 = references.line_contact(P, parameters["R"] / 2.0, law["E"] / (2.0 * (1.0 - law["nu"] ** 2)))
+    bench.close("peak pressure at the floor", results.peak_pressure("floor"), p0, 0.05)
+
+
+def rigid_shapes(bench):
+    """Sphere and cylinder against Hertz at the force found, plane against uniform compression."""
+    results = bench.run("rigid_shapes")
+    law = results.deck["materials"]["aluminium"]["elastic"]
+    E, nu = float(law["E"]), law["nu"]
+    modulus = references.contact_modulus((E, nu))
+
+    def second_moment(pair, middle, axes):
+        points = results.points[pair]
+        share = points["pressure"].ravel() * points["weight"].ravel()
+        offset = points["places"][:, axes] - middle
+        return np.sum(share * np.sum(offset**2, axis=1)) / np.sum(share)
+
+    a, p0 = references.sphere_contact(4.0 * results.force("sphere"), 40.0, modulus)
+    bench.close("sphere: contact radius", np.sqrt(second_moment("sphere", [0.0, 0.0], [0, 1]) / 0.4), a, 0.02)
+    bench.close("sphere: peak pressure", results.peak_pressure("sphere"), p0, 0.03)
+    # the slice is 1 thick and half of the scene
+    a, p0 = references.line_contact(2.0 * results.force("cylinder"), 40.0, modulus)
+    bench.close("cylinder: half-width", np.sqrt(second_moment("cylinder", [30.0], [0]) / 0.25), a, 0.02)
+    bench.close("cylinder: peak pressure", results.peak_pressure("cylinder"), p0, 0.03)
+    # free to widen: stress E delta / H
+    exact = E * 0.02 / 8.0
+    bench.below("plane: pressure", np.abs(results.surface["plane"]["pressure"] / exact - 1.0).max(), 1e-8)
+    bench.close("plane: force", results.force("plane"), exact * 8.0 * 8.0, 1e-8)
+
+
+def formulations(scene):
+    return lambda bench: common_checks.formulations_agree(bench, scene)
+
+
+def ranks(scene):
+    return lambda bench: common_checks.ranks_agree(bench, scene)
+
+
+CASES = {
+    "flat_punch": {"reference": flat_punch, "formulations": formulations("flat_punch")},
+    "disc_stack": {"reference": disc_stack, "formulations": formulations("disc_stack"), "ranks": ranks("disc_stack")},
+    "rigid_shapes": {
+        "reference": rigid_shapes,
+        "formulations": formulations("rigid_shapes"),
+        "ranks": ranks("rigid_shapes"),
+    },
+}

@@ -1,0 +1,80 @@
+"""Contact patch test: the exact stress is uniform in both blocks, whatever the meshes, elements and formulation."""
+import numpy as np
+
+import references
+
+FORMULATIONS = {
+    "semismooth": {"semismooth": {}},
+    "uzawa": {"uzawa": {}},
+    "penalty": {"penalty": {"alpha": 1e5}},
+}
+
+
+def elements(shape, orders=(1, 2)):
+    """(label, changes) for every cell shape, order and kind of mesh; `shape` is the .geo's name of the switch."""
+    for flag in (1, 0):
+        for order in orders:
+            for structured in (1, 0):
+                label = f"{shape if flag else 'simplices'}, order {order}, {'7:3' if structured else 'unstructured'}"
+                yield label, {
+                    f"mesh.parameters.{shape}": flag,
+                    "mesh.parameters.structured": structured,
+                    "mesh.order": order,
+                }
+
+
+def check_uniform(bench, label, results, up):
+    """Stress -1 along `up` (the pressed direction) and zero across, and the displacements that follow, per body."""
+    # Tensor6 in the file: xx xy xz yy yz zz.
+    normal = {1: 3, 2: 5}[up]
+    others = [i for i in range(6) if i != normal and not (up == 1 and i == 5)]  # plane strain has a stress along z
+    stress = results.nodal["stress"]
+    bench.below(f"{label}: largest error of the stress", np.abs(stress[:, normal] + 1.0).max(), 1e-3)
+    bench.below(f"{label}: largest other stress", np.abs(stress[:, others]).max(), 1e-3)
+    materials = {name: law["elastic"] for name, law in results.deck["materials"].items()}
+    for body, material in results.deck["bodies"].items():
+        E, nu = materials[material]["E"], materials[material]["nu"]
+        across = references.uniaxial_plane_strain(1.0, E, nu)[0] if up == 1 else nu / E
+        nodes = results.in_body(body)
+        error = results.nodal["displacement"][nodes, 0] - across * results.places[nodes, 0]
+        bench.below(f"{label}: error of the sliding of {body}", np.abs(error).max() / across, 1e-3)
+
+
+def run_elements(bench, scene, shape, up, formulations):
+    for label, changes in elements(shape):
+        for name in formulations:
+            results = bench.run(scene, {**changes, "contact.0.enforce": FORMULATIONS[name]})
+            check_uniform(bench, f"{label}, {name}", results, up)
+
+
+def elements_2d(bench):
+    """Every element, semismooth."""
+    run_elements(bench, "patch_2d", "quads", 1, ["semismooth"])
+
+
+def formulations_2d(bench):
+    """Every element, the other formulations."""
+    run_elements(bench, "patch_2d", "quads", 1, ["uzawa", "penalty"])
+
+
+def projection_2d(bench):
+    """Projection along the slave's normal, exchanged surfaces."""
+    for label, changes in elements("quads"):
+        results = bench.run("patch_2d", {**changes, "contact.0.projection": {"slave_normal": {}}})
+        check_uniform(bench, f"{label}, slave normal", results, 1)
+        results = bench.run("patch_2d", {**changes, "contact.0.slave": "lower_top", "contact.0.master": "upper_bottom"})
+        check_uniform(bench, f"{label}, exchanged", results, 1)
+
+
+def elements_3d(bench):
+    run_elements(bench, "patch_3d", "hexes", 2, ["semismooth"])
+
+
+def formulations_3d(bench):
+    run_elements(bench, "patch_3d", "hexes", 2, ["uzawa", "penalty"])
+
+
+CASES = {
+    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "projection": projection_2d},
+    "patch_3d": {"elements": elements_3d, "formulations": formulations_3d},
+}

@@ -1,0 +1,118 @@
+"""Closed forms that the scenes are compared with. Units are the caller's, consistent; pressures are positive.
+
+K. L. Johnson, Contact Mechanics, Cambridge University Press 1985, is cited as [J] with its equation numbers.
+"""
+import numpy as np
+
+
+def contact_modulus(*materials):
+    """E* of [J] 4.2b from (E, nu) of the elastic bodies; a rigid body is left out."""
+    return 1.0 / sum((1.0 - nu**2) / E for E, nu in materials)
+
+
+def line_contact(force, radius, modulus):
+    """Half-width a and peak pressure p0 of cylinders under `force` per length, [J] 4.43 and 4.45."""
+    a = np.sqrt(4.0 * force * radius / (np.pi * modulus))
+    return a, 2.0 * force / (np.pi * a)
+
+
+def sphere_contact(force, radius, modulus):
+    """Contact radius a and peak pressure p0 of spheres under `force`, [J] 4.22 and 4.24."""
+    a = np.cbrt(3.0 * force * radius / (4.0 * modulus))
+    return a, 3.0 * force / (2.0 * np.pi * a**2)
+
+
+def hertz_pressure(r, a, p0):
+    """p0 sqrt(1 - (r/a)^2) inside the contact, zero outside: line and point contact alike."""
+    return p0 * np.sqrt(np.maximum(0.0, 1.0 - (np.asarray(r) / a) ** 2))
+
+
+def line_axis_strain(z, a, p0, E, nu):
+    """Strain eps_z at depth z under the middle of a line contact in plane strain; stresses of [J] 4.46 (tension positive)."""
+    m = np.sqrt(a**2 + z**2)
+    sigma_x = -p0 / a * ((a**2 + 2.0 * z**2) / m - 2.0 * z)
+    sigma_z = -p0 * a / m
+    return ((1.0 - nu**2) * sigma_z - nu * (1.0 + nu) * sigma_x) / E
+
+
+def sphere_axis_strain(z, a, p0, E, nu):
+    """Strain eps_z at depth z under the middle of a circular contact; stresses of [J] 3.45 (tension positive)."""
+    s = np.maximum(z / a, 1e-12)
+    sigma_r = -p0 * ((1.0 + nu) * (1.0 - s * np.arctan(1.0 / s)) - 0.5 / (1.0 + s**2))
+    sigma_z = -p0 / (1.0 + s**2)
+    return (sigma_z - 2.0 * nu * sigma_r) / E
+
+
+def shortening(axis_strain, depth, a, p0, E, nu, points=4001):
+    """How much the axis between the surface and `depth` gets shorter: - integral of eps_z."""
+    z = np.linspace(0.0, depth, points)
+    return -np.trapz(axis_strain(z, a, p0, E, nu), z)
+
+
+def force_of_approach(approach, contact, axis_strain, radius, materials, depths):
+    """The force at which the points at `depths` under the contact in two bodies have approached by `approach`.
+
+    The approach of far points depends on the bodies' shape (in 2D without limit); that of points a few contact widths
+    away does not. The approach grows with the force, so the force is found by bisection.
+    """
+    modulus = contact_modulus(*materials)
+
+    def approach_of(force):
+        a, p0 = contact(force, radius, modulus)
+        return sum(shortening(axis_strain, z, a, p0, E, nu) for z, (E, nu) in zip(depths, materials))
+
+    low, high = 0.0, 1.0
+    while approach_of(high) < approach:
+        high *= 2.0
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if approach_of(middle) < approach else (low, middle)
+    return high
+
+
+def flat_punch_pressure(x, force, a):
+    """Pressure under a rigid flat punch of half-width a and `force` per length on a half-plane, [J] 2.64."""
+    return force / (np.pi * np.sqrt(a**2 - np.asarray(x) ** 2))
+
+
+def disc_shortening(force, R, a, E, nu):
+    """Shortening of a disc's diameter between two opposite contacts of half-width a, plane strain: twice [J] 5.57."""
+    return 2.0 * force * (1.0 - nu**2) / (np.pi * E) * (2.0 * np.log(4.0 * R / a) - 1.0)
+
+
+def disc_widening(force, R, E, nu, points=4001):
+    """Lengthening of the diameter across, from the stresses of a disc under two opposite point forces (Timoshenko and
+    Goodier, Theory of Elasticity, section 41), integrated along it in plane strain."""
+    x, D = np.linspace(-R, R, points), 2.0 * R
+    scale = 2.0 * force / (np.pi * D)
+    sigma_x = scale * ((D**2 - 4.0 * x**2) / (D**2 + 4.0 * x**2)) ** 2
+    sigma_y = -scale * (4.0 * D**4 / (D**2 + 4.0 * x**2) ** 2 - 1.0)
+    return np.trapz((1.0 + nu) / E * ((1.0 - nu) * sigma_x - nu * sigma_y), x)
+
+
+def boxed_disc_forces(shortening_x, shortening_y, R, E, nu):
+    """Contact forces (Q, P) across and down a disc whose diameters are shortened by the given amounts.
+
+    Each force shortens its own diameter and widens the other: two equations, solved by fixed-point iteration (the
+    shortening of a diameter is nearly linear in its force). The half-width at a contact with an equal disc and with a
+    rigid wall is the same: half the effective radius, half the modulus.
+    """
+    P = Q = 0.0
+
+    def force(total):
+        low, high = 0.0, E * R
+        for _ in range(100):
+            middle = 0.5 * (low + high)
+            a, _ = line_contact(middle, R, E / (1.0 - nu**2))
+            low, high = (middle, high) if disc_shortening(middle, R, a, E, nu) < total else (low, middle)
+        return high
+
+    for _ in range(200):
+        P = force(shortening_y + disc_widening(Q, R, E, nu))
+        Q = force(shortening_x + disc_widening(P, R, E, nu))
+    return Q, P
+
+
+def uniaxial_plane_strain(pressure, E, nu):
+    """(eps_x, eps_y) of a block under uniform pressure along y, free along x, plane strain."""
+    return nu * (1.0 + nu) * pressure / E, -(1.0 - nu**2) * pressure / E

@@ -1,0 +1,333 @@
+// Internal forces and stiffness of every element in every space: patch test, consistency with the energy, rigid
+// motions, absence of spurious modes, stress recovery.
+#include "base/error.hpp"
+#include "dense_system.hpp"
+#include "form/bulk.hpp"
+#include "material/elastic.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace amontons;
+using namespace amontons::testing;
+
+namespace {
+
+constexpr Elastic soft{7.0, 0.3};
+
+struct Case {
+  ElementType type;
+  Space space;
+};
+
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  for (const ElementType type :
+       {ElementType::Triangle3, ElementType::Triangle6, ElementType::Quadrilateral4, ElementType::Quadrilateral9})
+    for (const Space space : {Space::PlaneStrain, Space::PlaneStress, Space::Axisymmetric})
+      cases.push_back({type, space});
+  for (const ElementType type :
+       {ElementType::Tetrahedron4, ElementType::Tetrahedron10, ElementType::Hexahedron8, ElementType::Hexahedron27})
+    cases.push_back({type, Space::Solid});
+  return cases;
+}
+
+/// A skewed and smoothly bent box at x > 0.
+std::array<double, 3> bent(std::array<double, 3> p) {
+  const auto [x, y, z] = p;
+  return {1 + x + 0.2 * y + 0.1 * std::sin(2 * x + 3 * y + z), y - 0.15 * x + 0.1 * std::sin(3 * x - y + 2 * z),
+          z + 0.1 * x * y - 0.08 * std::sin(2 * y + x)};
+}
+
+/// Puts the middles of the cells' edges and faces back on straight sides.
+void straighten(Mesh& mesh) {
+  for (const auto& block : mesh.blocks) {
+    const ElementType corner_type = linear_element(block.type);
+    std::vector<double> values(num_nodes(corner_type));
+    const int dim = mesh.dim;
+    for (int m = num_nodes(corner_type); m < num_nodes(block.type); ++m) {
+      shape_values(corner_type, reference_nodes(block.type).subspan(std::size_t(m) * dim, dim), values);
+      for (std::int32_t c = 0; c < block.size(); ++c)
+        for (int i = 0; i < dim; ++i) {
+          double place = 0;
+          for (std::size_t a = 0; a < values.size(); ++a)
+            place += values[a] * mesh.position(block.cell(c)[a])[i];
+          mesh.coordinates[block.cell(c)[m] * dim + i] = place;
+        }
+    }
+  }
+}
+
+/// Curved sides where the quadrature integrates the gradients exactly on them (all but the ten-node tetrahedron).
+Mesh small_mesh(ElementType type, MPI_Comm comm = PETSC_COMM_SELF, std::array<int, 3> counts = {3, 2, 2}) {
+  Mesh mesh = box_mesh(comm, type, counts, bent);
+  if (type == ElementType::Tetrahedron10) straighten(mesh);
+  return mesh;
+}
+
+/// A displacement with constant stress that is in equilibrium without body force.
+std::array<double, 3> linear_field(Space space, std::span<const double> x) {
+  if (space == Space::Axisymmetric) return {0.3 * x[0], -0.2 * x[1] + 0.1, 0};
+  const double z = space == Space::Solid ? x[2] : 0;
+  return {0.1 + 0.3 * x[0] - 0.2 * x[1] + 0.15 * z, 0.4 * x[0] + 0.25 * x[1] - 0.1 * z,
+          0.2 * x[0] - 0.35 * x[1] - 0.15 * z};
+}
+
+/// The strain of linear_field; out of plane in plane stress the implied one.
+std::vector<double> linear_strain(Space space) {
+  switch (space) {
+  case Space::Axisymmetric:
+    return {0.3, -0.2, 0.3, 0};
+  case Space::PlaneStrain:
+    return {0.3, 0.25, 0, 0.2};
+  case Space::PlaneStress:
+    return {0.3, 0.25, -0.3 / 0.7 * 0.55, 0.2};
+  default:
+    return {0.3, 0.25, -0.15, 0.2, -0.45, 0.35};
+  }
+}
+
+/// Number of rigid motions of a space and displacement field of motion k.
+int num_rigid(Space space) { return space == Space::Solid ? 6 : (space == Space::Axisymmetric ? 1 : 3); }
+std::array<double, 3> rigid_motion(Space space, int k, std::span<const double> x) {
+  if (space == Space::Axisymmetric) return {0, 1, 0};
+  std::array<double, 3> u{};
+  const int dim = space_dim(space);
+  if (k < dim) {
+    u[k] = 1;
+  } else {
+    const int i = k - dim, j = (i + 1) % 3;
+    u[i] = -x[j];
+    u[j] = x[i];
+  }
+  return u;
+}
+
+/// Elasticity that hides that it is linear and isotropic, with an energy term β/4 (ε · ε)² when β > 0: forms must
+/// take their general kernel.
+class StiffeningLaw : public BulkLaw {
+ public:
+  StiffeningLaw(Space space, double beta)
+      : elastic_(make_law(soft, space)), size_(space == Space::Solid ? 6 : 4), beta_(beta) {}
+  void stress(std::span<const double> strain, std::span<double> stress) const override {
+    elastic_->stress(strain, stress);
+    for (std::size_t i = 0; i < strain.size(); ++i)
+      stress[i] += beta_ * square(strain, i / size_) * strain[i];
+  }
+  void energy(std::span<const double> strain, std::span<double> density) const override {
+    elastic_->energy(strain, density);
+    for (std::size_t p = 0; p < density.size(); ++p)
+      density[p] += beta_ / 4 * square(strain, p) * square(strain, p);
+  }
+  void moduli(std::span<const double> strain, std::span<double> moduli) const override {
+    elastic_->moduli(strain, moduli);
+    for (std::size_t p = 0; p < strain.size() / size_; ++p)
+      for (std::size_t i = 0; i < size_; ++i)
+        for (std::size_t j = 0; j < size_; ++j)
+          moduli[(p * size_ + i) * size_ + j] +=
+              beta_ * ((i == j ? square(strain, p) : 0.0) + 2 * strain[p * size_ + i] * strain[p * size_ + j]);
+  }
+  double stiffness() const override { return elastic_->stiffness(); }
+
+ private:
+  double square(std::span<const double> strain, std::size_t p) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < size_; ++i)
+      sum += strain[p * size_ + i] * strain[p * size_ + i];
+    return sum;
+  }
+  BulkLawPtr elastic_;
+  std::size_t size_;
+  double beta_;
+};
+
+} // namespace
+
+TEST_CASE("patch test: a linear displacement gives constant stress and no force inside") {
+  for (const auto& [type, space] : all_cases()) {
+    CAPTURE(int(type));
+    CAPTURE(int(space));
+    const Mesh mesh = small_mesh(type);
+    const DofLayout layout(mesh, {}, {});
+    BulkForm form(layout, space, {make_law(soft, space)});
+    const Eigen::VectorXd u = nodal_values(mesh, [&](auto x) { return linear_field(space, x); });
+    const Eigen::VectorXd force = residual_of(layout, form, u);
+    std::vector<bool> outside(mesh.num_local());
+    for (const auto& [name, nodes] : mesh.node_groups)
+      for (const auto node : nodes)
+        outside[node] = true;
+    double inside = 0;
+    int count = 0;
+    for (std::int32_t node = 0; node < mesh.num_local(); ++node)
+      if (!outside[node]) {
+        ++count;
+        inside = std::max(inside, force.segment(node * mesh.dim, mesh.dim).cwiseAbs().maxCoeff());
+      }
+    CHECK(count > 0);
+    CHECK(force.cwiseAbs().maxCoeff() > 0.01);
+    CHECK(inside < 1e-12 * force.cwiseAbs().maxCoeff());
+
+    std::vector<double> stress(linear_strain(space).size());
+    make_law(soft, space)->stress(linear_strain(space), stress);
+    form.for_each_batch({u.data(), std::size_t(u.size())}, [&](const PointBatch& batch) {
+      for (std::size_t i = 0; i < batch.stress.size(); ++i)
+        REQUIRE(batch.stress[i] == doctest::Approx(stress[i % stress.size()]).epsilon(1e-11));
+    });
+  }
+}
+
+TEST_CASE("forces are the derivative of the stored energy, the tangent that of the forces") {
+  for (const auto& [type, space] : all_cases())
+    for (const double beta : {-1.0, 0.0, 30.0}) { // -1: the plain elastic law
+      CAPTURE(int(type));
+      CAPTURE(int(space));
+      CAPTURE(beta);
+      const Mesh mesh = small_mesh(type, PETSC_COMM_SELF, {2, 1, 1});
+      const DofLayout layout(mesh, {}, {});
+      BulkForm form(layout, space, {beta < 0 ? make_law(soft, space) : std::make_shared<StiffeningLaw>(space, beta)});
+      CHECK(form.tangent_is_constant() == (beta < 0));
+      const Eigen::VectorXd u = 0.1 * random_vector(layout.num_global(), 1), v = random_vector(layout.num_global(), 2);
+      const Eigen::VectorXd force = residual_of(layout, form, u);
+      const Eigen::MatrixXd K = tangent_of(layout, form, u);
+      REQUIRE(force.norm() > 0.1);
+      REQUIRE(std::abs(force.dot(v)) > 1e-3);
+      CHECK((K - K.transpose()).norm() < 1e-13 * K.norm());
+
+      // Taylor: the error of a first-order expansion falls with the square of the step; zero for a linear law.
+      const auto remainder = [&](double h) {
+        return (residual_of(layout, form, u + h * v) - force - h * (K * v)).norm();
+      };
+      if (beta > 0) {
+        CHECK(remainder(1e-3) > 1e-9);
+        CHECK(std::log2(remainder(2e-3) / remainder(1e-3)) == doctest::Approx(2).epsilon(0.03));
+      } else {
+        CHECK(remainder(1) < 1e-12 * (K * v).norm());
+      }
+      // The energy is a polynomial of degree 4 at most, for which the five-point difference is exact.
+      const auto energy = [&](double h) { return form.stored_energy(state_of(u + h * v)); };
+      const double h = 0.1, slope = (8 * (energy(h) - energy(-h)) - (energy(2 * h) - energy(-2 * h))) / (12 * h);
+      CHECK(std::abs(slope - force.dot(v)) < 1e-9 * force.norm() * v.norm());
+      if (beta <= 0) CHECK(form.stored_energy(state_of(u)) == doctest::Approx(0.5 * u.dot(K * u)).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("the isotropic kernel agrees with the general one") {
+  for (const auto& [type, space] : all_cases()) {
+    CAPTURE(int(type));
+    CAPTURE(int(space));
+    const Mesh mesh = small_mesh(type, PETSC_COMM_SELF, {1, 1, 1});
+    const DofLayout layout(mesh, {}, {});
+    BulkForm fast(layout, space, {make_law(soft, space)});
+    BulkForm general(layout, space, {std::make_shared<StiffeningLaw>(space, 0.0)});
+    const Eigen::VectorXd u = Eigen::VectorXd::Zero(layout.num_global());
+    const Eigen::MatrixXd K = tangent_of(layout, general, u);
+    CHECK((tangent_of(layout, fast, u) - K).norm() < 1e-13 * K.norm());
+  }
+}
+
+TEST_CASE("rigid motions need no force, and nothing else is free of force") {
+  for (const auto& [type, space] : all_cases()) {
+    CAPTURE(int(type));
+    CAPTURE(int(space));
+    const Mesh mesh = small_mesh(type, PETSC_COMM_SELF, {1, 1, 1});
+    const DofLayout layout(mesh, {}, {});
+    BulkForm form(layout, space, {make_law(soft, space)});
+    for (int k = 0; k < num_rigid(space); ++k) {
+      const Eigen::VectorXd u = nodal_values(mesh, [&](auto x) { return rigid_motion(space, k, x); });
+      CHECK(residual_of(layout, form, u).norm() < 1e-12 * u.norm() * soft.young);
+      CHECK(std::abs(form.stored_energy(state_of(u))) < 1e-12);
+    }
+    const Eigen::MatrixXd K = tangent_of(layout, form, Eigen::VectorXd::Zero(layout.num_global()));
+    const Eigen::VectorXd eigenvalues = K.selfadjointView<Eigen::Lower>().eigenvalues();
+    const int rigid = num_rigid(space);
+    CHECK(eigenvalues.head(rigid).cwiseAbs().maxCoeff() < 1e-12 * eigenvalues.tail(1)[0]);
+    CHECK(eigenvalues[rigid] > 1e-4 * eigenvalues.tail(1)[0]);
+  }
+}
+
+TEST_CASE("axisymmetric: moving away from the axis costs hoop strain") {
+  const Mesh mesh = small_mesh(ElementType::Quadrilateral4);
+  const DofLayout layout(mesh, {}, {});
+  BulkForm form(layout, Space::Axisymmetric, {make_law(soft, Space::Axisymmetric)});
+  const Eigen::VectorXd u = nodal_values(mesh, [](auto) { return std::array<double, 3>{1, 0, 0}; });
+  CHECK(residual_of(layout, form, u).norm() > 1);
+}
+
+TEST_CASE("nodal stress of a linear displacement is its constant stress at every node, on any number of ranks") {
+  for (const auto& [type, space] : all_cases()) {
+    CAPTURE(int(type));
+    CAPTURE(int(space));
+    const Mesh mesh = small_mesh(type, PETSC_COMM_WORLD);
+    const DofLayout layout(mesh, {}, {});
+    const BulkForm form(layout, space, {make_law(soft, space)});
+    const Eigen::VectorXd u = nodal_values(mesh, [&](auto x) { return linear_field(space, x); });
+    const NodalStress nodal = form.nodal_stress({u.data(), std::size_t(u.size())});
+    const auto strain = linear_strain(space);
+    std::vector<double> stress(strain.size());
+    form.law(0).stress(strain, stress);
+    REQUIRE(nodal.stress.size() == std::size_t(mesh.num_local()) * stress.size());
+    double error = 0;
+    for (std::size_t i = 0; i < nodal.stress.size(); ++i)
+      error = std::max({error, std::abs(nodal.stress[i] - stress[i % stress.size()]),
+                        std::abs(nodal.strain[i] - strain[i % strain.size()])});
+    CHECK(error < 1e-12);
+  }
+}
+
+TEST_CASE("nodal stress does not depend on the number of ranks") {
+  const Field field = [](std::span<const double> x) {
+    return std::array<double, 3>{std::sin(x[0] + 2 * x[1]), x[0] * x[1], std::cos(x[0]) * x[2]};
+  };
+  for (const ElementType type : {ElementType::Hexahedron8, ElementType::Tetrahedron10}) {
+    const Mesh alone = small_mesh(type), spread = small_mesh(type, PETSC_COMM_WORLD);
+    const DofLayout layout_alone(alone, {}, {}), layout_spread(spread, {}, {});
+    const BulkForm form_alone(layout_alone, Space::Solid, {make_law(soft, Space::Solid)});
+    const BulkForm form_spread(layout_spread, Space::Solid, {make_law(soft, Space::Solid)});
+    const Eigen::VectorXd u_alone = nodal_values(alone, field), u_spread = nodal_values(spread, field);
+    const auto wanted = form_alone.nodal_stress({u_alone.data(), std::size_t(u_alone.size())}).stress;
+    const auto got = form_spread.nodal_stress({u_spread.data(), std::size_t(u_spread.size())}).stress;
+    std::map<std::uint64_t, std::int32_t> by_key;
+    for (std::int32_t node = 0; node < alone.num_local(); ++node)
+      by_key[alone.keys[node]] = node;
+    double error = 0, largest = 0;
+    for (std::int32_t node = 0; node < spread.num_local(); ++node)
+      for (int i = 0; i < 6; ++i) {
+        error = std::max(error, std::abs(got[node * 6 + i] - wanted[by_key.at(spread.keys[node]) * 6 + i]));
+        largest = std::max(largest, std::abs(got[node * 6 + i]));
+      }
+    CHECK(largest > 0.5);
+    CHECK(error < 1e-12);
+  }
+}
+
+TEST_CASE("every element couples its own unknowns and no others") {
+  struct Recorder : Coupling {
+    void add(std::span<const PetscInt> equations) override { sets.emplace_back(equations.begin(), equations.end()); }
+    std::vector<std::vector<PetscInt>> sets;
+  } recorder;
+  const Mesh mesh = small_mesh(ElementType::Quadrilateral9);
+  const DofLayout layout(mesh, {}, {});
+  const BulkForm form(layout, Space::PlaneStrain, {make_law(soft, Space::PlaneStrain)});
+  form.couple(recorder);
+  REQUIRE(recorder.sets.size() == std::size_t(mesh.blocks[0].size()));
+  for (std::int32_t c = 0; c < mesh.blocks[0].size(); ++c)
+    for (int a = 0; a < 9; ++a)
+      for (int i = 0; i < 2; ++i)
+        CHECK(recorder.sets[c][a * 2 + i] == layout.equation(mesh.blocks[0].cell(c)[a], i));
+}
+
+TEST_CASE("inverted cells and cells across the axis are refused with their place") {
+  const Mesh mirrored = box_mesh(PETSC_COMM_SELF, ElementType::Triangle3, {1, 1, 1}, [](auto p) {
+    return std::array<double, 3>{-p[0], p[1], 0};
+  });
+  const DofLayout layout(mirrored, {}, {});
+  const auto make = [&layout](Space space) { BulkForm(layout, space, {make_law(soft, space)}); };
+  CHECK_THROWS_WITH_AS(make(Space::PlaneStrain), doctest::Contains("'block' near (-0."), UserError);
+
+  const Mesh across = box_mesh(PETSC_COMM_SELF, ElementType::Triangle3, {1, 1, 1}, [](auto p) {
+    return std::array<double, 3>{p[0] - 2, p[1], 0};
+  });
+  const DofLayout layout_across(across, {}, {});
+  const auto make_across = [&](Space space) { BulkForm(layout_across, space, {make_law(soft, space)}); };
+  CHECK_NOTHROW(make_across(Space::PlaneStress));
+  CHECK_THROWS_WITH_AS(make_across(Space::Axisymmetric), doctest::Contains("radius"), UserError);
+}
