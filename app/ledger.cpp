@@ -7,6 +7,13 @@
 
 namespace amontons {
 
+namespace {
+
+/// Penetration at the start, relative to the facet size, that is more than rounding of the mesh's coordinates.
+constexpr double overlap_tolerance = 1e-9;
+
+} // namespace
+
 Ledger::Ledger(Scene& scene)
     : scene_(scene), external_(scene.layout->new_vector()), external_old_(scene.layout->new_vector()),
       unknowns_old_(scene.layout->new_vector()), work_(scene.layout->new_vector()),
@@ -15,6 +22,9 @@ Ledger::Ledger(Scene& scene)
     if (std::none_of(reactions_.begin(), reactions_.end(),
                      [&](const auto& known) { return known.group == condition.group; }))
       reactions_.push_back({.group = condition.group});
+  const auto state = scene.problem->state_at(unknowns_old_);
+  for (auto* contact : scene.contacts)
+    if (contact->totals(state).largest_penetration > overlap_tolerance) initial_overlap_ = true;
 }
 
 void Ledger::find_external_forces(Vec unknowns) {
@@ -119,8 +129,12 @@ void Ledger::accept(Vec unknowns) {
     rigid_force_old_[i] = force;
     rigid_shift_old_[i] = shift;
   }
-  external_work_ += here[0];
-  work_uncertainty_ += here[1];
+  if (initial_overlap_ && !opened_) external_work_ = stored_energy_;
+  else {
+    external_work_ += here[0];
+    work_uncertainty_ += here[1];
+  }
+  opened_ = true;
   const double bulk_energy = scene_.bulk_energy(unknowns);
   virtual_work_defect_ = here[2] - contact_work - 2.0 * bulk_energy;
   virtual_work_scale_ = here[3] + 2.0 * bulk_energy;
@@ -129,6 +143,7 @@ void Ledger::accept(Vec unknowns) {
 }
 
 void Ledger::restore(Vec unknowns, double work, double uncertainty) {
+  opened_ = true;
   find_external_forces(unknowns);
   external_work_ = work;
   work_uncertainty_ = uncertainty;

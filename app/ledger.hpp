@@ -18,6 +18,10 @@ class Ledger {
  public:
   explicit Ledger(Scene& scene);
 
+  /// Do surfaces overlap before anything has moved? Then the books open with the first equilibrium, and what it took to
+  /// get there counts as external work.
+  bool initial_overlap() const { return initial_overlap_; }
+
   /// Takes the accepted state into the books; call before Problem::commit, after a residual at `unknowns`. Collective.
   void accept(Vec unknowns);
 
@@ -51,6 +55,7 @@ class Ledger {
   std::vector<std::array<double, 3>> rigid_force_old_, rigid_shift_old_;
   double external_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0;
   double virtual_work_defect_ = 0.0, virtual_work_scale_ = 0.0;
+  bool initial_overlap_ = false, opened_ = false;
   std::vector<GroupReaction> reactions_;
   std::vector<double> tied_displacements_;
 };

@@ -80,8 +80,11 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
   if (wants_field(scene, "stress")) {
     recovered = scene.bulk->nodal_stress(displacement);
     const std::size_t components = scene.mesh.dim == 2 ? strain_size<2> : strain_size<3>;
-    for (std::size_t at = 0; at < recovered.stress.size(); at += components)
+    for (std::size_t at = 0; at < recovered.stress.size(); at += components) {
       mises.push_back(von_mises(std::span(recovered.stress).subspan(at, components)));
+      // Fields hold tensor components: half of the engineering shear strains.
+      for (std::size_t shear = 3; shear < components; ++shear) recovered.strain[at + shear] *= 0.5;
+    }
     step.nodal.push_back({.name = "stress", .kind = FieldKind::SymmetricTensor, .values = recovered.stress});
     step.nodal.push_back({.name = "strain", .kind = FieldKind::SymmetricTensor, .values = recovered.strain});
     step.nodal.push_back({.name = "von_mises", .kind = FieldKind::Scalar, .values = mises});

@@ -99,7 +99,9 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments) : comm_(comm), arguments_
 
 void Run::restart() {
   const auto checkpoint = read_checkpoint(scene_->mesh, *arguments_.restart, run_identity(*scene_));
-  first_step_ = static_cast<std::size_t>(checkpoint.step);
+  // By time and not by number: the deck may have got more or longer steps since.
+  const auto& steps = scene_->deck.steps;
+  while (first_step_ < steps.size() && steps[first_step_].to <= checkpoint.time * (1.0 + 1e-12)) ++first_step_;
   first_time_ = checkpoint.time;
   resume_increment_ = checkpoint.next_increment;
   resume_time_ = checkpoint.time;
@@ -225,10 +227,8 @@ void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_incr
       history_row(*scene_, *ledger_, last_totals_, {.time = time, .outcome = outcome, .certified = certified}));
   progress(scene_->deck.steps[std::min(step, scene_->deck.steps.size() - 1)].name.value, outcome, last_totals_,
            certified);
-  if (last || increments_ % scene_->deck.output.every == 0) {
-    write_fields(*scene_, *fields_, unknowns_, samples);
-    write_checkpoint_file(step, next_increment);
-  }
+  if (last || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns_, samples);
+  write_checkpoint_file(step, next_increment);
 }
 
 void Run::write_checkpoint_file(std::size_t step, double next_increment) {

@@ -1,11 +1,12 @@
-"""What a run leaves behind, read for pictures and reports: the last step of fields.h5 and the columns of history.csv."""
+"""What a run leaves behind, read for pictures: the last step of fields.h5 and the columns of history.csv."""
 
 import csv
 
 import h5py
 import numpy as np
 
-# Code in a Mixed topology: nodes, corners, triangles that tile the (second-order) element, edges as chains of nodes, faces.
+# By the element's code in a Mixed topology: number of nodes, then what pictures need of it: triangles that tile a plane
+# element, its edges as chains of nodes, the corners of a solid element's faces.
 QUAD9_TILES = [(0, 4, 8), (0, 8, 7), (4, 1, 5), (4, 5, 8), (8, 5, 2), (8, 2, 6), (7, 8, 6), (7, 6, 3)]
 TRI6_TILES = [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]
 PLANE = {
@@ -76,12 +77,12 @@ class Fields:
         return places, array(now, "displacement"), split_topology(fixed["topology"]), array(now, "pressure")
 
     def points(self, pair):
-        """Places, pressure and status at the quadrature points of a pair."""
+        """Places, pressure, status, gap and normal at the quadrature points of a pair."""
         path = f"points/{pair}"
         if path not in self.step:
             return None
         group = self.step[path]
-        return np.asarray(group["places"]), array(group, "pressure"), array(group, "status")
+        return np.asarray(group["places"]), *(array(group, name) for name in ("pressure", "status", "gap", "normal"))
 
 
 def read_history(path):

@@ -3,10 +3,11 @@ DefineConstant[
   n_lower = {3, Name "cells along an edge of the lower block"},
   n_upper = {7, Name "cells along an edge of the upper block"},
   hexes = {1, Name "1: hexahedra, 0: tetrahedra"},
-  structured = {1, Name "1: regular mesh, 0: unstructured"}
+  structured = {1, Name "1: regular mesh of the interface, 0: unstructured"}
 ];
 
-// Hexahedra are extruded from the base, so that an unstructured base of quadrilaterals serves as well.
+// Hexahedra are extruded from the base, so that an unstructured base of quadrilaterals serves as well. Of tetrahedra only
+// the faces below and above can be regular.
 Macro OneBlock
   p = newp;
   Point(p) = {0, 0, z, 1 / n};
@@ -30,10 +31,11 @@ Macro OneBlock
     Recombine Surface{base};
     out[] = Extrude{0, 0, 0.5}{ Surface{base}; Layers{Ceil(n / 2)}; Recombine; };
   Else
+    out[] = Extrude{0, 0, 0.5}{ Surface{base}; };
     If (structured)
-      out[] = Extrude{0, 0, 0.5}{ Surface{base}; Layers{Ceil(n / 2)}; };
-    Else
-      out[] = Extrude{0, 0, 0.5}{ Surface{base}; };
+      far[] = Abs(Boundary{ Surface{out[0]}; });
+      Transfinite Curve{far[]} = n + 1;
+      Transfinite Surface{out[0]};
     EndIf
   EndIf
 Return

@@ -8,6 +8,13 @@
 
 namespace amontons {
 
+namespace {
+
+/// A scene that has been unloaded completely has no forces left but those that are small against earlier ones.
+constexpr double unloaded_ratio = 1e-3;
+
+} // namespace
+
 /// Puts blocks into a PETSc matrix, leaving out rows and columns of prescribed equations.
 class Problem::MatrixTangent : public Tangent {
  public:
@@ -73,7 +80,6 @@ bool Problem::any_rank(bool mine) const {
 
 void Problem::begin_increment(double time, Vec unknowns) {
   time_ = time;
-  force_scale_ = 0.0;
   first_guess_ = true;
   const auto& mesh = layout_.mesh();
   VecArray values(unknowns);
@@ -85,11 +91,14 @@ void Problem::begin_increment(double time, Vec unknowns) {
 }
 
 void Problem::commit(Vec unknowns) {
+  largest_accepted_force_ = std::max(largest_accepted_force_, force_scale_);
+  accepted_time_ = time_;
   const auto state = state_at(unknowns);
   for (const auto& form : forms_) form->commit(state);
 }
 
 void Problem::roll_back() {
+  time_ = accepted_time_;
   for (const auto& form : forms_) form->roll_back();
 }
 
@@ -119,7 +128,7 @@ void Problem::residual(Vec unknowns, Vec result) {
   }
   double norm = 0.0;
   AMT_PETSC(VecNorm(raw_, NORM_2, &norm));
-  force_scale_ = std::max({force_scale_, std::sqrt(largest), norm});
+  force_scale_ = std::max({std::sqrt(largest), norm, unloaded_ratio * largest_accepted_force_});
 }
 
 std::vector<double> Problem::unbalanced_forces() const {

@@ -33,7 +33,8 @@ class Problem {
   /// Starts an increment that ends at `time`: evaluates the prescribed displacements there and writes them into the
   /// unknowns. Collective.
   void begin_increment(double time, Vec unknowns);
-  /// Makes the unknowns the start of the next increment, or returns forms to the last such start. Collective.
+  /// Makes the unknowns the start of the next increment, or returns forms and time to the last such start (the caller
+  /// keeps the unknowns). Collective.
   void commit(Vec unknowns);
   void roll_back();
   double time() const { return time_; }
@@ -48,8 +49,8 @@ class Problem {
   /// values: num_local x dim. For tied groups the sum over the group stands at each of its nodes. Collective.
   std::vector<double> unbalanced_forces() const;
   Vec raw_residual() const { return raw_; }
-  /// Norm of the largest set of forces that met in any residual of this increment: what an out-of-balance force is
-  /// small against. Same on every rank.
+  /// Norm of the forces that met in the last residual (internal, contact, loads, reactions): what an out-of-balance force
+  /// is small against. Not below a thousandth of what it was in any accepted state. Same on every rank.
   double force_scale() const { return force_scale_; }
 
   /// A matrix for the tangent. Collective.
@@ -81,8 +82,8 @@ class Problem {
   std::vector<PetscInt> foreign_prescribed_;   // other ranks' prescribed equations that local forms touch, ascending
   VecHandle raw_;
   std::vector<double> displacement_;
-  double time_ = 0.0;
-  double force_scale_ = 0.0;
+  double time_ = 0.0, accepted_time_ = 0.0;
+  double force_scale_ = 0.0, largest_accepted_force_ = 0.0;
   double diagonal_scale_ = 1.0;
   bool first_guess_ = false;
   bool pattern_ready_ = false, constant_ready_ = false, tangent_ready_ = false;

@@ -54,7 +54,15 @@ Xi clamped(ElementType type, Xi xi) {
   return xi;
 }
 
+Surface::Surface(ElementType type_of_facet, std::span<const double> nodes_of_facet)
+    : type(type_of_facet), nodes(nodes_of_facet) {
+  if (!is_bilinear()) return;
+  const Eigen::Vector3d p = node(0), q = node(1), r = node(2), s = node(3);
+  bilinear = {0.25 * (p + q + r + s), 0.25 * (q + r - p - s), 0.25 * (r + s - p - q), 0.25 * (p + r - q - s)};
+}
+
 Eigen::Vector3d Surface::position(const Xi& xi) const {
+  if (is_bilinear()) return bilinear[0] + xi[0] * bilinear[1] + xi[1] * (bilinear[2] + xi[0] * bilinear[3]);
   std::array<double, largest> values;
   const int count = num_nodes(type);
   shape_values(type, std::span(xi.data(), 2), std::span(values).first(count));
@@ -65,6 +73,11 @@ Eigen::Vector3d Surface::position(const Xi& xi) const {
 }
 
 Tangents Surface::tangents(const Xi& xi) const {
+  if (is_bilinear()) {
+    Tangents result;
+    result << bilinear[1] + xi[1] * bilinear[3], bilinear[2] + xi[0] * bilinear[3];
+    return result;
+  }
   std::array<double, 2 * largest> gradients;
   const int count = num_nodes(type);
   shape_gradients(type, std::span(xi.data(), 2), std::span(gradients).first(2 * std::size_t(count)));
@@ -77,6 +90,11 @@ Tangents Surface::tangents(const Xi& xi) const {
 }
 
 Eigen::Matrix3d Surface::second_derivatives(const Xi& xi) const {
+  if (is_bilinear()) {
+    Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+    result.col(1) = bilinear[3];
+    return result;
+  }
   std::array<double, 4 * largest> hessians;
   const int count = num_nodes(type);
   shape_hessians(type, std::span(xi.data(), 2), std::span(hessians).first(4 * std::size_t(count)));

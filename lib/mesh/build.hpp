@@ -35,10 +35,11 @@ struct RawMesh {
   std::vector<std::int64_t> cell_nodes;  // indices into coordinates
   std::vector<std::int32_t> cell_bodies; // index into groups
   std::vector<PhysicalGroup> groups;
-  /// Elements of lower dimension in physical groups: vertices of each (nodes in gmsh order), and the group.
+  /// Elements of lower dimension in physical groups: corner nodes of each (gmsh order), and the group. One for each
+  /// group that it is in.
   struct Sub {
     std::vector<std::int64_t> nodes;
-    ElementType type;   // meaningless for points (dim 0): nodes.size() == 1
+    ElementType type;   // of order 1; meaningless for points (dim 0): nodes.size() == 1
     std::int32_t group; // index into groups
   };
   std::vector<Sub> subs;

@@ -4,6 +4,10 @@
 #include "mesh/partitioner.hpp"
 #include "mesh/plex.hpp"
 
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
 namespace amontons {
 namespace {
 
@@ -31,6 +35,26 @@ MeshFacts shared_facts(MPI_Comm comm, const RawMesh& raw) {
     broadcast(comm, name);
   MPI_Bcast(facts.group_dims.data(), sizes[2], MPI_INT32_T, 0, comm);
   return facts;
+}
+
+/// The same mesh with its cells in the order of their types. DMPlex refines only meshes whose points of one type are
+/// numbered together in this order, and orders them so itself only when it distributes to several ranks.
+RawMesh sorted_by_type(const RawMesh& raw) {
+  std::vector<std::int64_t> order(raw.cell_types.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int64_t a, std::int64_t b) { return raw.cell_types[a] < raw.cell_types[b]; });
+  RawMesh sorted = raw;
+  sorted.cell_nodes.clear();
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto cell = order[i];
+    sorted.cell_types[i] = raw.cell_types[cell];
+    sorted.cell_bodies[i] = raw.cell_bodies[cell];
+    sorted.cell_nodes.insert(sorted.cell_nodes.end(), raw.cell_nodes.begin() + raw.cell_offsets[cell],
+                             raw.cell_nodes.begin() + raw.cell_offsets[cell + 1]);
+    sorted.cell_offsets[i + 1] = static_cast<std::int64_t>(sorted.cell_nodes.size());
+  }
+  return sorted;
 }
 
 PartitionHints partition_hints(const RawMesh& raw, const ContactHints& contact) {
@@ -65,9 +89,12 @@ PlexMesh distributed(PlexMesh&& whole, PartitionHints hints) {
 } // namespace
 
 Mesh distribute_mesh(MPI_Comm comm, const RawMesh& raw, const ContactHints& hints, int refine) {
-  auto facts = shared_facts(comm, raw);
-  auto plex = plex_of(comm, raw, facts);
-  plex = distributed(std::move(plex), partition_hints(raw, hints));
+  std::optional<RawMesh> sorted;
+  if (!std::is_sorted(raw.cell_types.begin(), raw.cell_types.end())) sorted = sorted_by_type(raw);
+  const RawMesh& whole = sorted ? *sorted : raw;
+  auto facts = shared_facts(comm, whole);
+  auto plex = plex_of(comm, whole, facts);
+  plex = distributed(std::move(plex), partition_hints(whole, hints));
   for (int level = 0; level < refine; ++level)
     plex = refined(plex, facts.order);
   return local_mesh(comm, std::move(plex), facts);

@@ -155,7 +155,7 @@ void check_overlaps(const RawMesh& raw, const std::vector<std::size_t>& node_tag
   if (crowded.empty()) return;
   Tally cells;
   for_facets([&](std::int64_t cell, std::size_t hash) {
-    if (crowded.contains(hash) && (cells.last != cell)) cells.add(cell);
+    if (crowded.contains(hash) && cells.last != cell) cells.add(cell);
   });
   faults.push_back("cells that overlap (three or more share a facet): " + counted(raw, cells, node_tags) +
                    "; mesh the bodies again.");

@@ -13,7 +13,7 @@ namespace amontons {
 
 namespace {
 
-constexpr PetscInt format_version = 1;
+constexpr std::int64_t format_version = 1;
 const std::string root = "/checkpoint";
 
 /// FNV-1a: enough to tell two decks apart, and the same on every machine.
@@ -32,7 +32,7 @@ std::uint64_t key_sum(const Mesh& mesh) {
   return sum;
 }
 
-/// HDF5 through PETSc knows doubles and 32-bit integers; halves of a key are exact in doubles.
+/// Arrays of the file are doubles, in which the halves of a key are exact.
 std::vector<double> halves(std::span<const std::uint64_t> keys) {
   std::vector<double> values;
   values.reserve(2 * keys.size());
@@ -62,28 +62,28 @@ void write_contents(Hdf5File& file, const Mesh& mesh, const std::string& identit
   file.write_attribute(root, "key_sum", std::to_string(key_sum(mesh)));
   file.write_attribute(root, "identity", std::to_string(hash_of(identity)));
   file.write_attribute(root, "time", checkpoint.time);
-  file.write_attribute(root, "step", PetscInt(checkpoint.step));
-  file.write_attribute(root, "increment", PetscInt(checkpoint.increment));
+  file.write_attribute(root, "step", std::int64_t(checkpoint.step));
+  file.write_attribute(root, "increment", std::int64_t(checkpoint.increment));
   file.write_attribute(root, "next_increment", checkpoint.next_increment);
   const auto owned = static_cast<std::size_t>(mesh.num_owned);
   file.write(root + "/keys", 2, halves(std::span(mesh.keys).first(owned)));
 
-  file.write_attribute(root, "nodal_count", PetscInt(checkpoint.nodal.size()));
+  file.write_attribute(root, "nodal_count", std::int64_t(checkpoint.nodal.size()));
   std::size_t i = 0;
   for (const auto& [name, array] : checkpoint.nodal) {
     file.write_attribute(root, attribute("nodal", i, "name"), name);
-    file.write_attribute(root, attribute("nodal", i, "components"), PetscInt(array.components));
+    file.write_attribute(root, attribute("nodal", i, "components"), std::int64_t(array.components));
     file.write(dataset("nodal", i), array.components, std::span(array.values).first(owned * array.components));
     ++i;
   }
 
   int rank = 0;
   MPI_Comm_rank(mesh.comm, &rank);
-  file.write_attribute(root, "global_count", PetscInt(checkpoint.global.size()));
+  file.write_attribute(root, "global_count", std::int64_t(checkpoint.global.size()));
   i = 0;
   for (const auto& [name, values] : checkpoint.global) {
     file.write_attribute(root, attribute("global", i, "name"), name);
-    file.write_attribute(root, attribute("global", i, "size"), PetscInt(values.size()));
+    file.write_attribute(root, attribute("global", i, "size"), std::int64_t(values.size()));
     file.write(dataset("global", i), 1, std::span(values).first(rank == 0 ? values.size() : 0));
     ++i;
   }
@@ -145,7 +145,7 @@ std::vector<double> picked(MPI_Comm comm, int components, std::vector<double> in
 
 void read_nodal(Hdf5File& file, const Mesh& mesh, const std::string& path, Checkpoint& checkpoint) {
   const Share share = even_share(mesh.comm, mesh.num_global);
-  const auto keys = joined(file.read(root + "/keys", 2, PetscInt(2 * share.size)));
+  const auto keys = joined(file.read(root + "/keys", 2 * share.size));
   const auto found = rows_of_keys(mesh.comm, keys, share.first, mesh.keys);
   together(mesh.comm, [&] {
     if (std::find(found.begin(), found.end(), -1) != found.end())
@@ -156,7 +156,7 @@ void read_nodal(Hdf5File& file, const Mesh& mesh, const std::string& path, Check
   for (std::size_t i = 0; i < count; ++i) {
     const std::string name = file.read_string(root, attribute("nodal", i, "name"));
     const int components = static_cast<int>(file.read_integer(root, attribute("nodal", i, "components")));
-    auto in_file = file.read(dataset("nodal", i), components, PetscInt(components * share.size));
+    auto in_file = file.read(dataset("nodal", i), components * share.size);
     checkpoint.nodal[name] = {components, picked(mesh.comm, components, std::move(in_file), rows)};
   }
 }
@@ -167,9 +167,9 @@ void read_global(Hdf5File& file, MPI_Comm comm, Checkpoint& checkpoint) {
   const auto count = static_cast<std::size_t>(file.read_integer(root, "global_count"));
   for (std::size_t i = 0; i < count; ++i) {
     const std::string name = file.read_string(root, attribute("global", i, "name"));
-    const PetscInt size = file.read_integer(root, attribute("global", i, "size"));
-    auto values = file.read(dataset("global", i), 1, rank == 0 ? size : 0);
-    values.resize(size);
+    const std::int64_t size = file.read_integer(root, attribute("global", i, "size"));
+    auto values = file.read(dataset("global", i), rank == 0 ? size : 0);
+    values.resize(static_cast<std::size_t>(size));
     MPI_Bcast(values.data(), static_cast<int>(size), MPI_DOUBLE, 0, comm);
     checkpoint.global[name] = std::move(values);
   }
@@ -184,10 +184,9 @@ void write_checkpoint(const Mesh& mesh, const std::string& path, const std::stri
     if (!std::ofstream(unfinished, std::ios::trunc))
       throw UserError("The checkpoint " + unfinished + " cannot be written. Choose another directory with --out.");
   });
-  {
-    Hdf5File file(mesh.comm, unfinished, FileUse::Create);
-    write_contents(file, mesh, identity, checkpoint);
-  }
+  Hdf5File file(mesh.comm, unfinished, FileUse::Create);
+  write_contents(file, mesh, identity, checkpoint);
+  file.finish();
   on_root(mesh.comm, [&] { rename_synchronized(unfinished, path); });
 }
 
@@ -205,6 +204,7 @@ Checkpoint read_checkpoint(const Mesh& mesh, const std::string& path, const std:
   checkpoint.next_increment = file.read_double(root, "next_increment");
   read_nodal(file, mesh, path, checkpoint);
   read_global(file, mesh.comm, checkpoint);
+  file.finish();
   return checkpoint;
 }
 

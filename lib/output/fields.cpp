@@ -155,11 +155,12 @@ void FieldsWriter::start_files(const std::string& title, std::optional<double> r
   while (resumes && file.has_group("/run" + std::to_string(run)))
     ++run;
   run_ = "/run" + std::to_string(run);
-  file.write_attribute(run_, "dim", PetscInt(mesh_->dim));
+  file.write_attribute(run_, "dim", std::int64_t(mesh_->dim));
   std::string bodies;
   for (const auto& body : mesh_->bodies)
     bodies += (bodies.empty() ? "" : "\n") + body;
   file.write_attribute(run_, "bodies", bodies);
+  file.finish();
 }
 
 void FieldsWriter::write_mesh() {
@@ -179,6 +180,7 @@ void FieldsWriter::write_mesh() {
   file.write(run_ + "/mesh/topology", topology);
   file.write(run_ + "/mesh/body", bodies);
   file.write(run_ + "/mesh/rank", std::vector<PetscInt>(bodies.size(), rank));
+  file.finish();
 }
 
 const FieldsWriter::Surface& FieldsWriter::surface(const std::string& pair, const std::string& name) {
@@ -212,6 +214,7 @@ const FieldsWriter::Surface& FieldsWriter::surface(const std::string& pair, cons
   const std::string group = run_ + "/surfaces/" + dataset_name(pair);
   file.write(group + "/coordinates", 3, coordinates_3d(*mesh_, result.nodes));
   file.write(group + "/topology", topology);
+  file.finish();
   return surfaces_.emplace(pair, std::move(result)).first->second;
 }
 
@@ -300,18 +303,17 @@ void FieldsWriter::write(const FieldsStep& step) {
     surface(fields.name, fields.surface);
   const std::string group = run_ + formatted("/step_%06d", num_steps_++);
   std::vector<XdmfGrid> grids;
-  { // The scope closes the file before the XDMF speaks of it.
-    StepFile out(mesh_->comm, h5_path_, group);
-    out.file().write_attribute(group, "time", step.time);
-    out.file().write_attribute(group, "tensor_components", std::string(tensor_components));
-    grids.push_back(volume_grid(out, step));
-    for (const auto& fields : step.surfaces)
-      if (surfaces_.at(fields.name).num_facets > 0) grids.push_back(surface_grid(out, step, fields));
-    for (const auto& points : step.points) {
-      auto grid = points_grid(out, points);
-      if (grid.num_cells > 0) grids.push_back(std::move(grid));
-    }
+  StepFile out(mesh_->comm, h5_path_, group);
+  out.file().write_attribute(group, "time", step.time);
+  out.file().write_attribute(group, "tensor_components", std::string(tensor_components));
+  grids.push_back(volume_grid(out, step));
+  for (const auto& fields : step.surfaces)
+    if (surfaces_.at(fields.name).num_facets > 0) grids.push_back(surface_grid(out, step, fields));
+  for (const auto& points : step.points) {
+    auto grid = points_grid(out, points);
+    if (grid.num_cells > 0) grids.push_back(std::move(grid));
   }
+  out.file().finish();
   append_xdmf(xdmf_step(step.time, grids));
 }
 

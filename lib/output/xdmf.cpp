@@ -45,8 +45,7 @@ std::string escaped(const std::string& text) {
 std::string data_item(const XdmfData& data) {
   std::string text = "<DataItem Format=\"HDF\" Dimensions=\"";
   text += std::to_string(data.rows);
-  // PETSc writes index sets as one column, vectors of block size 1 as one-dimensional.
-  if (data.columns > 1 || data.is_integer) text += ' ' + std::to_string(data.columns);
+  if (data.columns > 1) text += ' ' + std::to_string(data.columns);
   text += data.is_integer ? "\" NumberType=\"Int\" Precision=\"" : "\" NumberType=\"Float\" Precision=\"";
   text += std::to_string(data.is_integer ? sizeof(PetscInt) : sizeof(double));
   return text + "\">" + escaped(data.path) + "</DataItem>";

@@ -12,6 +12,9 @@ namespace {
 constexpr PetscInt multigrid_from_2d = 1'000'000;
 constexpr PetscInt multigrid_from_3d = 200'000;
 
+/// Out-of-balance forces below this part of the forces in play are rounding.
+constexpr double rounding = 1e-15;
+
 std::string in_words(SNESConvergedReason reason, double relative) {
   switch (reason) {
   case SNES_DIVERGED_FNORM_NAN: return "the residual is not a number";
@@ -107,11 +110,10 @@ PetscErrorCode Newton::test_convergence(SNES snes, PetscInt iteration, PetscReal
     PetscReal atol = 0.0, rtol = 0.0;
     PetscInt max_iterations = 0;
     AMT_PETSC(SNESGetTolerances(snes, &atol, &rtol, nullptr, &max_iterations, nullptr));
-    if (iteration == 0) newton.first_norm_ = norm;
     *reason = SNES_CONVERGED_ITERATING;
     if (newton.interrupted_ && newton.interrupted_()) *reason = SNES_BREAKOUT_INNER_ITER;
     else if (!std::isfinite(norm)) *reason = SNES_DIVERGED_FNORM_NAN;
-    else if (norm <= rtol * newton.problem_.force_scale() || norm == 0.0) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+    else if (norm <= (iteration < newton.least_iterations_ ? rounding : rtol) * newton.problem_.force_scale()) *reason = SNES_CONVERGED_FNORM_RELATIVE;
     else if (iteration >= max_iterations) *reason = SNES_DIVERGED_MAX_IT;
   });
 }

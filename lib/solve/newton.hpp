@@ -34,6 +34,10 @@ class Newton {
   /// Collective.
   Newton(Problem& problem, std::function<bool()> interrupted);
 
+  /// Iterate at least this often unless the residual is rounding: for a loop around that wants more accuracy than the
+  /// tolerance and pays only a back-substitution for it.
+  void require_iterations(int least) { least_iterations_ = least; }
+
   /// From the state in `unknowns` (prescribed values already in place) to equilibrium. Collective.
   SolveOutcome solve(Vec unknowns);
 
@@ -50,8 +54,7 @@ class Newton {
   MatHandle matrix_;
   VecHandle residual_;
   std::exception_ptr kept_;
-  int factorizations_ = 0;
-  double first_norm_ = 0.0;
+  int factorizations_ = 0, least_iterations_ = 0;
 };
 
 } // namespace amontons

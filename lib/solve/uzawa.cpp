@@ -52,6 +52,7 @@ SolveOutcome UzawaLoop::solve(Vec unknowns) {
   unknowns_ = unknowns;
   inner_ = {};
   kept_ = nullptr;
+  newton_.require_iterations(1);
   multipliers_.get(current_);
   const PetscErrorCode code = SNESSolve(snes_, nullptr, current_);
   if (kept_) std::rethrow_exception(kept_);

@@ -12,8 +12,12 @@ import yaml
 
 TOP = Path(__file__).resolve().parents[2]
 
-# XDMF cell code -> number of nodes, of the cells that Amontons writes.
-CELL_NODES = {4: 3, 5: 4, 6: 4, 9: 8, 36: 6, 35: 9, 38: 10, 50: 27}
+# XDMF cell code -> number of nodes in the file. Hexahedra of order 2 are written with 20 of their 27.
+CELL_NODES = {4: 3, 5: 4, 6: 4, 9: 8, 36: 6, 35: 9, 38: 10, 48: 20}
+
+
+def text_of(attribute):
+    return attribute.decode() if isinstance(attribute, bytes) else str(attribute)
 
 
 class DeckLoader(yaml.SafeLoader):
@@ -59,8 +63,8 @@ class Results:
         with h5py.File(self.folder / "fields.h5", "r") as file:
             run = file["run0"]
             step = run[max(name for name in run if name.startswith("step_"))]
-            self.bodies = run.attrs["bodies"]
-            self.bodies = (self.bodies.decode() if isinstance(self.bodies, bytes) else str(self.bodies)).split("\n")
+            self.bodies = text_of(run.attrs["bodies"]).split("\n")
+            self.tensor = text_of(step.attrs["tensor_components"]).split()
             self.places = run["mesh/coordinates"][:]
             self.node_body = self._node_bodies(run["mesh/topology"][:].ravel(), run["mesh/body"][:].ravel())
             self.nodal = {name: item[:] for name, item in step.items() if isinstance(item, h5py.Dataset)}
@@ -68,7 +72,10 @@ class Results:
                 pair: {"places": run["surfaces"][pair]["coordinates"][:], **{k: v[:] for k, v in group.items()}}
                 for pair, group in step.get("surfaces", {}).items()
             }
-            self.points = {pair: {k: v[:] for k, v in group.items()} for pair, group in step.get("points", {}).items()}
+            self.points = {
+                pair: {k: v[:] if v.shape[1:] == (3,) else v[:].ravel() for k, v in group.items()}
+                for pair, group in step.get("points", {}).items()
+            }
 
     def _node_bodies(self, topology, bodies):
         result, at = np.full(len(self.places), -1), 0
@@ -78,13 +85,20 @@ class Results:
             at += 1 + count
         return result
 
+    def stress(self, component):
+        """Nodal stress, component by name: "xx", "xy" ..."""
+        return self.nodal["stress"][:, self.tensor.index(component)]
+
     def in_body(self, name):
         return self.node_body == self.bodies.index(name)
 
-    def force(self, pair):
-        """Contact force of a pair: pressure times area over its points (of the part that is modelled)."""
+    def force_vector(self, pair):
+        """Contact force on the slave (of the part that is modelled): sum of pressure times area times normal."""
         points = self.points[pair]
-        return float(np.sum(points["pressure"].ravel() * points["weight"].ravel()))
+        return np.sum((points["pressure"] * points["weight"])[..., None] * points["normal"], axis=0)
+
+    def force(self, pair):
+        return float(np.linalg.norm(self.force_vector(pair)))
 
     def peak_pressure(self, pair):
         return float(np.nanmax(self.surface[pair]["pressure"]))

@@ -24,13 +24,13 @@ class Hertz:
         self.round_body = "sphere" if scene == "hertz_3d" else "indenter"
         # the part modelled: half of the cylinder, the whole sphere, a quarter of the sphere
         self.share = {"hertz_2d": 0.5, "hertz_axisymmetric": 1.0, "hertz_3d": 0.25}[scene]
-        self.force = results.force("interface") / self.share
+        self.force = abs(results.force_vector("interface")[self.up]) / self.share
         self.materials = materials_of(results, self.round_body, "block")
         self.contact = references.line_contact if self.line else references.sphere_contact
         self.a, self.p0 = self.contact(self.force, RADIUS[scene], references.contact_modulus(*self.materials))
         points = results.points["interface"]
         self.r = np.hypot(points["places"][:, 0], points["places"][:, 1] if self.up == 2 else 0.0)
-        self.pressure, self.weight = points["pressure"].ravel(), points["weight"].ravel()
+        self.pressure, self.weight = points["pressure"], points["weight"]
 
     def width(self):
         """Half-width or radius of the contact from the second moment of the pressure: <x^2> = a^2 / 4 for the half-ellipse
@@ -66,10 +66,7 @@ class Hertz:
             depths.append(side * places[node, self.up] + (overlap if side > 0 else 0.0))
             moved.append(self.results.nodal["displacement"][node, self.up])
         approach = moved[1] - moved[0] + overlap
-        strain = references.line_axis_strain if self.line else references.sphere_axis_strain
-        return references.force_of_approach(
-            approach, self.contact, strain, RADIUS[self.scene], self.materials, depths
-        )
+        return references.sphere_force_of_approach(approach, RADIUS[self.scene], self.materials, depths)
 
     def load(self):
         """The whole force that the deck asks for at the end."""
@@ -77,19 +74,21 @@ class Hertz:
         return -float(next(iter(text.values())).replace("*t", "")) / self.share
 
 
-def check(bench, scene, changes, width, peak, force):
-    """One run against Hertz, with the tolerances of width, peak pressure and force."""
+def check(bench, scene, changes, width, peak, force=None):
+    """One run against Hertz, with the tolerances of width, peak pressure and force. In 2D the force cannot be told from an
+    approach: even between near points the bodies' finite size L enters in proportion to depth / L."""
     hertz = Hertz(scene, bench.run(scene, changes))
     bench.close("contact force against the load", hertz.force, hertz.load(), 1e-6)
-    history = hertz.results.history[f"contact_interface_force_{'xyz'[hertz.up]}"][-1] / hertz.share
+    history = abs(hertz.results.history[f"contact_interface_force_{'xyz'[hertz.up]}"][-1]) / hertz.share
     bench.close("contact force in history.csv", history, hertz.force, 1e-10)
     bench.close("contact half-width", hertz.width(), hertz.a, width)
     bench.close("peak pressure", hertz.results.peak_pressure("interface"), hertz.p0, peak)
-    bench.close("force by the approach", hertz.force_from_approach(5.0 * hertz.a), hertz.force, force)
+    if force:
+        bench.close("force by the approach", hertz.force_from_approach(5.0 * hertz.a), hertz.force, force)
 
 
 def reference_2d(bench):
-    check(bench, "hertz_2d", {}, 0.01, 0.01, 0.01)
+    check(bench, "hertz_2d", {}, 0.01, 0.01)
 
 
 def convergence_2d(bench):
@@ -105,13 +104,13 @@ def convergence_2d(bench):
 
 def second_order_2d(bench):
     """Second-order cells, twice as large."""
-    check(bench, "hertz_2d", {"mesh.order": 2, "mesh.parameters.h": 0.1}, 0.01, 0.01, 0.01)
+    check(bench, "hertz_2d", {"mesh.order": 2, "mesh.parameters.h": 0.1}, 0.01, 0.01)
 
 
 def exchanged_2d(bench):
-    """The block as slave; the same contact within the discretization error."""
-    changes = {"contact.0.slave": "block_top", "contact.0.master": "indenter_rim"}
-    check(bench, "hertz_2d", changes, 0.01, 0.01, 0.01)
+    """The stiffer body as slave; the same contact within the discretization error."""
+    changes = {"contact.0.slave": "indenter_rim", "contact.0.master": "block_top"}
+    check(bench, "hertz_2d", changes, 0.01, 0.01)
 
 
 def reference_axisymmetric(bench):

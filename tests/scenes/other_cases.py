@@ -8,17 +8,17 @@ import references
 def flat_punch(bench):
     """Pressure within 3 % away from the edge, rising towards the edge without oscillation."""
     results = bench.run("flat_punch")
-    surface = results.surface["punch"]
+    surface = results.surface["interface"]
     order = np.argsort(surface["places"][:, 0])
     x, pressure = surface["places"][order, 0], surface["pressure"].ravel()[order]
     a = results.deck["mesh"]["parameters"]["a"]
-    exact = references.flat_punch_pressure(x[x < 0.8 * a], 2.0 * results.force("punch"), a)
+    exact = references.flat_punch_pressure(x[x < 0.8 * a], 2.0 * results.force("interface"), a)
     bench.below("largest error for x < 0.8 a", np.abs(pressure[x < 0.8 * a] / exact - 1.0).max(), 0.03)
     # The exact pressure rises everywhere: any fall between neighbouring nodes would be an oscillation. The mean over a cell
     # next to the edge is finite, so the last node's value must be of its size: integral of p over (a - h, a) / h.
     bench.below("largest fall between neighbours / mean pressure", -np.diff(pressure).min() / pressure.mean(), 0.0)
     h = x[-1] - x[-2]
-    mean = 2.0 * results.force("punch") / np.pi * (np.pi / 2.0 - np.arcsin(1.0 - h / a)) / h
+    mean = 2.0 * results.force("interface") / np.pi * (np.pi / 2.0 - np.arcsin(1.0 - h / a)) / h
     bench.below("pressure at the edge / mean pressure of the last cell", pressure[-1] / mean, 2.0)
 
 
@@ -52,7 +52,7 @@ def rigid_shapes(bench):
 
     def second_moment(pair, middle, axes):
         points = results.points[pair]
-        share = points["pressure"].ravel() * points["weight"].ravel()
+        share = points["pressure"] * points["weight"]
         offset = points["places"][:, axes] - middle
         return np.sum(share * np.sum(offset**2, axis=1)) / np.sum(share)
 

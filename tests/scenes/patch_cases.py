@@ -19,18 +19,18 @@ def elements(shape, orders=(1, 2)):
                 yield label, {
                     f"mesh.parameters.{shape}": flag,
                     "mesh.parameters.structured": structured,
+                    # Recombined cells come in pairs along an edge: 3 and 7 would give 4 and 8, and the meshes match.
+                    "mesh.parameters.n_lower": 3 if structured else 5,
                     "mesh.order": order,
                 }
 
 
 def check_uniform(bench, label, results, up):
     """Stress -1 along `up` (the pressed direction) and zero across, and the displacements that follow, per body."""
-    # Tensor6 in the file: xx xy xz yy yz zz.
-    normal = {1: 3, 2: 5}[up]
-    others = [i for i in range(6) if i != normal and not (up == 1 and i == 5)]  # plane strain has a stress along z
-    stress = results.nodal["stress"]
-    bench.below(f"{label}: largest error of the stress", np.abs(stress[:, normal] + 1.0).max(), 1e-3)
-    bench.below(f"{label}: largest other stress", np.abs(stress[:, others]).max(), 1e-3)
+    normal = "xyz"[up] * 2
+    others = [name for name in results.tensor if name != normal and not (up == 1 and name == "zz")]
+    bench.below(f"{label}: largest error of the stress", np.abs(results.stress(normal) + 1.0).max(), 1e-3)
+    bench.below(f"{label}: largest other stress", max(np.abs(results.stress(name)).max() for name in others), 1e-3)
     materials = {name: law["elastic"] for name, law in results.deck["materials"].items()}
     for body, material in results.deck["bodies"].items():
         E, nu = materials[material]["E"], materials[material]["nu"]
@@ -58,12 +58,10 @@ def formulations_2d(bench):
 
 
 def projection_2d(bench):
-    """Projection along the slave's normal, exchanged surfaces."""
+    """Projection along the slave's normal."""
     for label, changes in elements("quads"):
         results = bench.run("patch_2d", {**changes, "contact.0.projection": {"slave_normal": {}}})
         check_uniform(bench, f"{label}, slave normal", results, 1)
-        results = bench.run("patch_2d", {**changes, "contact.0.slave": "lower_top", "contact.0.master": "upper_bottom"})
-        check_uniform(bench, f"{label}, exchanged", results, 1)
 
 
 def elements_3d(bench):

@@ -27,14 +27,6 @@ def hertz_pressure(r, a, p0):
     return p0 * np.sqrt(np.maximum(0.0, 1.0 - (np.asarray(r) / a) ** 2))
 
 
-def line_axis_strain(z, a, p0, E, nu):
-    """Strain eps_z at depth z under the middle of a line contact in plane strain; stresses of [J] 4.46 (tension positive)."""
-    m = np.sqrt(a**2 + z**2)
-    sigma_x = -p0 / a * ((a**2 + 2.0 * z**2) / m - 2.0 * z)
-    sigma_z = -p0 * a / m
-    return ((1.0 - nu**2) * sigma_z - nu * (1.0 + nu) * sigma_x) / E
-
-
 def sphere_axis_strain(z, a, p0, E, nu):
     """Strain eps_z at depth z under the middle of a circular contact; stresses of [J] 3.45 (tension positive)."""
     s = np.maximum(z / a, 1e-12)
@@ -43,23 +35,23 @@ def sphere_axis_strain(z, a, p0, E, nu):
     return (sigma_z - 2.0 * nu * sigma_r) / E
 
 
-def shortening(axis_strain, depth, a, p0, E, nu, points=4001):
-    """How much the axis between the surface and `depth` gets shorter: - integral of eps_z."""
+def sphere_shortening(depth, a, p0, E, nu, points=4001):
+    """How much the axis under a circular contact gets shorter between the surface and `depth`: - integral of eps_z."""
     z = np.linspace(0.0, depth, points)
-    return -np.trapz(axis_strain(z, a, p0, E, nu), z)
+    return -np.trapz(sphere_axis_strain(z, a, p0, E, nu), z)
 
 
-def force_of_approach(approach, contact, axis_strain, radius, materials, depths):
-    """The force at which the points at `depths` under the contact in two bodies have approached by `approach`.
+def sphere_force_of_approach(approach, radius, materials, depths):
+    """The force at which the points at `depths` on the axis of two bodies have approached by `approach`.
 
-    The approach of far points depends on the bodies' shape (in 2D without limit); that of points a few contact widths
-    away does not. The approach grows with the force, so the force is found by bisection.
+    The approach of far points depends on the size of the bodies; that of points a few contact radii away does not. It
+    grows with the force, so the force is found by bisection.
     """
     modulus = contact_modulus(*materials)
 
     def approach_of(force):
-        a, p0 = contact(force, radius, modulus)
-        return sum(shortening(axis_strain, z, a, p0, E, nu) for z, (E, nu) in zip(depths, materials))
+        a, p0 = sphere_contact(force, radius, modulus)
+        return sum(sphere_shortening(z, a, p0, E, nu) for z, (E, nu) in zip(depths, materials))
 
     low, high = 0.0, 1.0
     while approach_of(high) < approach:

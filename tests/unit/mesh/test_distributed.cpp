@@ -195,3 +195,19 @@ TEST_CASE("more ranks than cells leave some without any") {
       CHECK(mesh.num_global == (2 * n + 1) * (n + 1));
     }
 }
+
+TEST_CASE("triangles and quadrilaterals share edges in one body") {
+  const std::string geo = "h = 0.25; Point(1) = {0, 0, 0, h}; Point(2) = {1, 0, 0, h}; Line(1) = {1, 2};\n"
+                          "q[] = Extrude{0, 1, 0}{ Curve{1}; Layers{4}; Recombine; };\n"
+                          "t[] = Extrude{0, 1, 0}{ Curve{q[0]}; };\n"
+                          "Physical Surface(\"body\") = {q[1], t[1]};\n";
+  for (const int order : {1, 2})
+    for (const int refine : {0, 1}) {
+      const auto mesh = mesh_from_geo(geo, order, refine);
+      CHECK(sum_over_ranks(std::int64_t(mesh.blocks.size())) >= 2);
+      CHECK(volume(mesh, -1) == Approx(2.0).epsilon(1e-12));
+      CHECK(area(mesh, mesh.exterior) == Approx(6.0).epsilon(1e-12)); // nothing along the shared edges
+      CHECK(flux_of_position(mesh, mesh.exterior, 0) == Approx(4.0).epsilon(1e-12));
+      CHECK(gathered_set(mesh.keys).size() == std::size_t(mesh.num_global));
+    }
+}

@@ -129,6 +129,7 @@ TEST_CASE("history rows read back exactly and a restart cuts the later ones") {
   }
   put(scratch / "unused", "");
   CHECK(read_text(path, "file") == head + two_rows + "0.35,5,6\n");
+  MPI_Barrier(world);
   put(path, head + two_rows + "0.35,5"); // cut by a crash
   { const HistoryWriter history(world, path, columns, 9.0); }
   CHECK(read_text(path, "file") == head + two_rows);
