@@ -1,16 +1,45 @@
 #include "certify.hpp"
 
 #include "base/log.hpp"
+#include "geometry/box_tree.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace amontons {
+
+namespace {
+
+/// Strain below which forces and energies are rounding.
+constexpr double rounding_strain = 1e-10;
+
+/// Size of the mesh's box. Collective.
+double scene_size(const Mesh& mesh) {
+  Box box;
+  for (std::int32_t node = 0; node < mesh.num_local(); ++node)
+    box.include(mesh.position(node));
+  MPI_Allreduce(MPI_IN_PLACE, box.low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, box.high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
+  return box.diagonal();
+}
+
+double softest(const Scene& scene) {
+  double stiffness = 1e300;
+  for (std::size_t b = 0; b < scene.mesh.bodies.size(); ++b)
+    stiffness = std::min(stiffness, scene.bulk->law(static_cast<std::int32_t>(b)).stiffness());
+  return stiffness;
+}
+
+} // namespace
 
 Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<ContactSamples>& samples, Vec unknowns) {
   const auto pairs = pair_names(scene);
   const auto forces = ledger.nodal_external_forces(unknowns);
   const auto& deck = scene.deck.certificate;
   const auto state = scene.problem->state_at(unknowns);
+  const double size = scene_size(scene.mesh);
+  const double area = scene.mesh.dim == 2 && scene.deck.space != Space::Axisymmetric ? size : size * size;
+  const double force_floor = rounding_strain * softest(scene) * area;
   return certify({.mesh = scene.mesh,
                   .space = scene.deck.space,
                   .displacement = state.displacement,
@@ -27,12 +56,15 @@ Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<Contac
                                  .complementarity = deck.complementarity,
                                  .balance = deck.balance,
                                  .energy = deck.energy,
-                                 .volume_ratio = deck.volume_ratio}});
+                                 .volume_ratio = deck.volume_ratio},
+                  .force_floor = force_floor,
+                  .energy_floor = rounding_strain * force_floor * size});
 }
 
 bool CertificateRecord::add(const Certificate& certificate, double time) {
   if (worst_.empty())
-    for (const auto& item : certificate.items) worst_.push_back({item, time});
+    for (const auto& item : certificate.items)
+      worst_.push_back({item, time});
   for (std::size_t i = 0; i < worst_.size(); ++i) {
     const auto& item = certificate.items[i];
     auto& worst = worst_[i];
@@ -49,8 +81,11 @@ nlohmann::ordered_json CertificateRecord::to_json() const {
   json["passed"] = passed();
   json["failed_increments"] = failed_increments_;
   for (const auto& [item, time] : worst_)
-    json["items"][item.name] = {{"worst", item.value}, {"tolerance", item.tolerance}, {"passed", item.passed},
-                                {"time", time}, {"where", item.where}};
+    json["items"][item.name] = {{"worst", item.value},
+                                {"tolerance", item.tolerance},
+                                {"passed", item.passed},
+                                {"time", time},
+                                {"where", item.where}};
   return json;
 }
 
@@ -58,8 +93,8 @@ std::vector<std::string> CertificateRecord::failures() const {
   std::vector<std::string> lines;
   for (const auto& [item, time] : worst_)
     if (!item.passed)
-      lines.push_back(formatted("%s is %.3g at t = %g, allowed %.3g%s%s", item.name.c_str(), item.value, time, item.tolerance,
-                                item.where.empty() ? "" : ": ", item.where.c_str()));
+      lines.push_back(formatted("%s is %.3g at t = %g, allowed %.3g%s%s", item.name.c_str(), item.value, time,
+                                item.tolerance, item.where.empty() ? "" : ": ", item.where.c_str()));
   return lines;
 }
 

@@ -114,11 +114,12 @@ TaggedRule<EnforceDeck> enforce_rule() {
   const std::string alpha = "Augmentation stiffness in units of (tangent modulus / facet size).";
   ObjectRule<SemismoothDeck> semismooth;
   semismooth.optional("alpha", &SemismoothDeck::alpha, number("1", Range::above(0)),
-                      alpha + " Has no influence on the solution, some on the Newton iterations.");
+                      alpha + " Its influence on the solution vanishes with the mesh; larger: smaller gaps between "
+                              "nodes, rougher pressure.");
   ObjectRule<UzawaDeck> uzawa;
   uzawa
       .optional("alpha", &UzawaDeck::alpha, number("1", Range::above(0)),
-                alpha + " Has no influence on the solution; larger: fewer outer iterations, harder inner ones.")
+                alpha + " The solution is that of semismooth with the same alpha; larger: fewer outer iterations.")
       .optional("tolerance", &UzawaDeck::tolerance, number("1", Range::above_up_to(0, 0.01)),
                 "Relative change of the multipliers at which the outer loop stops.")
       .optional("max_iterations", &UzawaDeck::max_iterations, integer(Range::at_least(1)),

@@ -66,10 +66,10 @@ struct CylinderDeck {
 using MasterDeck = std::variant<Located<std::string>, PlaneDeck, SphereDeck, CylinderDeck>;
 
 struct PenaltyDeck {
-  double alpha = 100.0;
+  double alpha = 30.0;
 };
 struct UzawaDeck {
-  double alpha = 10.0;
+  double alpha = 1.0;
   double tolerance = 1e-8; // relative change of the multipliers at which the outer loop stops
   int max_iterations = 100;
 };

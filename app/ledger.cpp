@@ -129,7 +129,8 @@ void Ledger::accept(Vec unknowns) {
     rigid_force_old_[i] = force;
     rigid_shift_old_[i] = shift;
   }
-  if (initial_overlap_ && !opened_) external_work_ = stored_energy_;
+  if (initial_overlap_ && !opened_)
+    external_work_ = stored_energy_;
   else {
     external_work_ += here[0];
     work_uncertainty_ += here[1];

@@ -83,7 +83,8 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
     for (std::size_t at = 0; at < recovered.stress.size(); at += components) {
       mises.push_back(von_mises(std::span(recovered.stress).subspan(at, components)));
       // Fields hold tensor components: half of the engineering shear strains.
-      for (std::size_t shear = 3; shear < components; ++shear) recovered.strain[at + shear] *= 0.5;
+      for (std::size_t shear = 3; shear < components; ++shear)
+        recovered.strain[at + shear] *= 0.5;
     }
     step.nodal.push_back({.name = "stress", .kind = FieldKind::SymmetricTensor, .values = recovered.stress});
     step.nodal.push_back({.name = "strain", .kind = FieldKind::SymmetricTensor, .values = recovered.strain});

@@ -101,7 +101,8 @@ void Run::restart() {
   const auto checkpoint = read_checkpoint(scene_->mesh, *arguments_.restart, run_identity(*scene_));
   // By time and not by number: the deck may have got more or longer steps since.
   const auto& steps = scene_->deck.steps;
-  while (first_step_ < steps.size() && steps[first_step_].to <= checkpoint.time * (1.0 + 1e-12)) ++first_step_;
+  while (first_step_ < steps.size() && steps[first_step_].to <= checkpoint.time * (1.0 + 1e-12))
+    ++first_step_;
   first_time_ = checkpoint.time;
   resume_increment_ = checkpoint.next_increment;
   resume_time_ = checkpoint.time;

@@ -5,7 +5,7 @@ DefineConstant[
   columns = {3, Name "discs side by side"},
   rows = {4, Name "discs one above the other"},
   R = {10, Name "half of the spacing of the discs"},
-  interference = {0.005, Name "radius of the discs - R"},
+  interference = {0.015, Name "radius of the discs - R"},
   h = {0.1, Name "cell size at the poles"},
   growth = {0.2, Name "growth of the cell size with the distance from the poles"}
 ];

@@ -11,14 +11,16 @@ namespace {
 
 std::string joined_lines(const std::vector<std::string>& messages) {
   std::string text;
-  for (const auto& message : messages) text += (text.empty() ? "" : "\n") + message;
+  for (const auto& message : messages)
+    text += (text.empty() ? "" : "\n") + message;
   return text;
 }
 
 /// One string for all messages and back: '\0' between them.
 std::string packed(const std::vector<std::string>& messages) {
   std::string text;
-  for (const auto& message : messages) text += message + '\0';
+  for (const auto& message : messages)
+    text += message + '\0';
   return text;
 }
 
@@ -60,7 +62,8 @@ void together(MPI_Comm comm, const std::function<void()>& work) {
   std::vector<int> lengths(ranks);
   MPI_Allgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, comm);
   std::vector<int> offsets(ranks + 1, 0);
-  for (int rank = 0; rank < ranks; ++rank) offsets[rank + 1] = offsets[rank] + lengths[rank];
+  for (int rank = 0; rank < ranks; ++rank)
+    offsets[rank + 1] = offsets[rank] + lengths[rank];
   if (offsets[ranks] == 0) return;
   std::string all(offsets[ranks], ' ');
   MPI_Allgatherv(mine.data(), length, MPI_CHAR, all.data(), lengths.data(), offsets.data(), MPI_CHAR, comm);
@@ -76,7 +79,8 @@ std::string nearest_match(const std::string& word, const std::vector<std::string
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const auto& candidate : candidates) {
     std::vector<std::size_t> row(candidate.size() + 1);
-    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+    for (std::size_t j = 0; j < row.size(); ++j)
+      row[j] = j;
     for (std::size_t i = 1; i <= word.size(); ++i) {
       std::size_t diagonal = row[0];
       row[0] = i;

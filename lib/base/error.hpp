@@ -9,8 +9,8 @@
 
 namespace amontons {
 
-/// The deck, the mesh or a command line is wrong: exit status 2. Holds all the messages found in one go, each a complete
-/// sentence that says what, where, and what to do.
+/// The deck, the mesh or a command line is wrong: exit status 2. Holds all the messages found in one go, each a
+/// complete sentence that says what, where, and what to do.
 class UserError : public std::runtime_error {
  public:
   explicit UserError(std::string message);

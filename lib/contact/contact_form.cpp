@@ -1,13 +1,15 @@
-// The multipliers are the lumped L2 projection of the traction, λ_i ∫ N_i = ∫ N_i σ: an average of numbers <= 0, so a nodal
-// multiplier is never tensile, also at the edge of contact. (With the consistent mass it overshoots there.) What the lumping
-// does to the constraint is that ε ∫ N_i g equals (lumped − consistent mass) λ, of order h² λ'' and zero for uniform pressure.
+// The multipliers are the lumped L2 projection of the traction, λ_i ∫ N_i = ∫ N_i σ: an average of numbers <= 0, so a
+// nodal multiplier is never tensile, also at the edge of contact. (With the consistent mass it overshoots there.) What
+// the lumping does to the constraint is that ε ∫ N_i g equals (lumped − consistent mass) λ, of order h² λ'' and zero
+// for uniform pressure.
 //
-// Scaling of unknown multipliers. With traction λ = s μ, s one number per pair (force / volume, the mean of ε), μ has the
-// unit of a displacement and its equation that of a force; so norms over all equations mean something and nothing depends on
-// the units. u and μ rows are the derivatives of
+// Scaling of unknown multipliers. With traction λ = s μ, s one number per pair (force / volume, the mean of ε), μ has
+// the unit of a displacement and its equation that of a force; so norms over all equations mean something and nothing
+// depends on the units. u and μ rows are the derivatives of
 //   Π(u, μ) = ∫ min(0, λ + ε g)² / (2 ε) − Σ_i λ_i² ∫ N_i / (2 ε):
 //   δu:  ∫ σ δg,    δμ_i:  s ∫ N_i (σ − λ_i) / ε,
-// second derivatives (χ = 1 in contact, else 0):  uu: χ ε δg δg,  uμ: χ s δg N,  μμ: χ s² N N / ε − s² δ_ij N_i / ε. Symmetric.
+// second derivatives (χ = 1 in contact, else 0):  uu: χ ε δg δg,  uμ: χ s δg N,  μμ: χ s² N N / ε − s² δ_ij N_i / ε.
+// Symmetric.
 #include "contact/contact_form.hpp"
 
 #include "base/timer.hpp"
@@ -48,7 +50,8 @@ NodeField multiplier_nodes(const Mesh& mesh, const std::string& pair, const std:
 ContactForm::ContactForm(const DofLayout& layout, ContactPair pair)
     : layout_(layout), pair_(std::move(pair)), nodes_(multiplier_nodes(layout.mesh(), pair_.name, pair_.slave)),
       space_(layout.mesh(), {nodes_}), position_(layout.mesh().num_local(), -1), points_(layout, pair_) {
-  for (std::size_t i = 0; i < nodes_.nodes.size(); ++i) position_[nodes_.nodes[i]] = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < nodes_.nodes.size(); ++i)
+    position_[nodes_.nodes[i]] = static_cast<std::int32_t>(i);
   const std::size_t n = points_.points().size();
   gap_.assign(n, 0.0);
   lambda_.assign(n, 0.0);
@@ -72,7 +75,8 @@ ContactForm::ContactForm(const DofLayout& layout, ContactPair pair)
   if (is_unknown()) {
     const int field = std::get<Semismooth>(pair_.enforcement).field;
     std::vector<PetscInt> equations;
-    for (const auto node : nodes_.nodes) equations.push_back(layout.extra_equation(field, node));
+    for (const auto node : nodes_.nodes)
+      equations.push_back(layout.extra_equation(field, node));
     const auto size = static_cast<PetscInt>(equations.size());
     IsHandle from;
     AMT_PETSC(ISCreateGeneral(layout.mesh().comm, size, equations.data(), PETSC_COPY_VALUES, from.put()));
@@ -93,7 +97,8 @@ std::vector<ContactForm::Group> ContactForm::groups() const {
   return all;
 }
 
-// --- state at a point --------------------------------------------------------------------------------------------------
+// --- state at a point
+// --------------------------------------------------------------------------------------------------
 
 double ContactForm::gap_at(const ContactPoint& point, const State& state) const {
   if (point.master == ContactPoint::none) return 1e300;
@@ -102,12 +107,14 @@ double ContactForm::gap_at(const ContactPoint& point, const State& state) const 
   const auto nodes = points_.slave().facet(point.facet);
   const auto shape = points_.slave_shape(point);
   for (std::size_t a = 0; a < nodes.size(); ++a)
-    for (int c = 0; c < d; ++c) gap += point.normal[c] * shape[a] * state.displacement[std::size_t(nodes[a]) * d + c];
+    for (int c = 0; c < d; ++c)
+      gap += point.normal[c] * shape[a] * state.displacement[std::size_t(nodes[a]) * d + c];
   if (point.master == ContactPoint::rigid) return gap; // its motion is in gap0
   const auto masters = points_.master()->nodes(point.master);
   for (std::size_t b = 0; b < masters.size(); ++b) {
     const auto displacement = points_.master()->displacement(masters[b]);
-    for (int c = 0; c < d; ++c) gap -= point.normal[c] * point.master_shape[b] * displacement[c];
+    for (int c = 0; c < d; ++c)
+      gap -= point.normal[c] * point.master_shape[b] * displacement[c];
   }
   return gap;
 }
@@ -116,7 +123,8 @@ double ContactForm::multiplier_at(const ContactPoint& point) const {
   const auto nodes = points_.slave().facet(point.facet);
   const auto shape = points_.multiplier_shape(point);
   double lambda = 0.0;
-  for (std::size_t a = 0; a < shape.size(); ++a) lambda += shape[a] * multipliers_[position_[nodes[a]]];
+  for (std::size_t a = 0; a < shape.size(); ++a)
+    lambda += shape[a] * multipliers_[position_[nodes[a]]];
   return lambda;
 }
 
@@ -125,7 +133,8 @@ void ContactForm::fetch_multipliers(const State& state) {
   AMT_PETSC(VecScatterBegin(multiplier_scatter_, state.unknowns, local_multipliers_, INSERT_VALUES, SCATTER_FORWARD));
   AMT_PETSC(VecScatterEnd(multiplier_scatter_, state.unknowns, local_multipliers_, INSERT_VALUES, SCATTER_FORWARD));
   VecReader values(local_multipliers_);
-  for (std::size_t i = 0; i < multipliers_.size(); ++i) multipliers_[i] = scale_ * values[static_cast<PetscInt>(i)];
+  for (std::size_t i = 0; i < multipliers_.size(); ++i)
+    multipliers_[i] = scale_ * values[static_cast<PetscInt>(i)];
 }
 
 /// Gap, λ, λ̂ and status of all points. Collective.
@@ -154,19 +163,21 @@ void ContactForm::evaluate(const State& state) {
 void ContactForm::guess_contact() {
   const auto& points = points_.points();
   double nearest = 1e300;
-  for (std::size_t i = 0; i < points.size(); ++i) nearest = std::min(nearest, gap_[i] / points[i].size);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    nearest = std::min(nearest, gap_[i] / points[i].size);
   MPI_Allreduce(MPI_IN_PLACE, &nearest, 1, MPI_DOUBLE, MPI_MIN, layout_.mesh().comm);
   if (nearest > guess_reach && !pair_.holds_floating_body) return;
   for (std::size_t i = 0; i < points.size(); ++i)
     active_[i] = points[i].master != ContactPoint::none && gap_[i] / points[i].size <= nearest + guess_reach;
 }
 
-// --- coupling ------------------------------------------------------------------------------------------------------------
+// --- coupling
+// ------------------------------------------------------------------------------------------------------------
 
 bool ContactForm::coupled(const Group& group) const {
-  return group.master >= 0 && std::any_of(coupled_.begin() + static_cast<std::ptrdiff_t>(group.begin),
-                                          coupled_.begin() + static_cast<std::ptrdiff_t>(group.end),
-                                          [](std::uint8_t c) { return c != 0; });
+  return group.master >= 0 &&
+         std::any_of(coupled_.begin() + static_cast<std::ptrdiff_t>(group.begin),
+                     coupled_.begin() + static_cast<std::ptrdiff_t>(group.end), [](std::uint8_t c) { return c != 0; });
 }
 
 void ContactForm::couple_near() {
@@ -181,7 +192,8 @@ void ContactForm::gather_equations(const Group& group, std::vector<PetscInt>& eq
   equations.clear();
   const auto nodes = points_.slave().facet(group.facet);
   for (const auto node : nodes)
-    for (int c = 0; c < d; ++c) equations.push_back(layout_.equation(node, c));
+    for (int c = 0; c < d; ++c)
+      equations.push_back(layout_.equation(node, c));
   if (is_unknown()) {
     const int field = std::get<Semismooth>(pair_.enforcement).field;
     for (int a = 0; a < num_vertices(points_.slave().types[group.facet]); ++a)
@@ -216,7 +228,8 @@ bool ContactForm::tangent_changed(const State& state) {
   return !assembled_ || active_ != assembled_active_;
 }
 
-// --- assembly ------------------------------------------------------------------------------------------------------------
+// --- assembly
+// ------------------------------------------------------------------------------------------------------------
 
 /// ∂g/∂(equations of the group), zero at multipliers.
 void ContactForm::gap_variation(const ContactPoint& point, const Group& group, std::span<double> variation) const {
@@ -224,12 +237,14 @@ void ContactForm::gap_variation(const ContactPoint& point, const Group& group, s
   std::fill(variation.begin(), variation.end(), 0.0);
   const auto shape = points_.slave_shape(point);
   for (std::size_t a = 0; a < shape.size(); ++a)
-    for (int c = 0; c < d; ++c) variation[a * d + c] = point.normal[c] * shape[a];
+    for (int c = 0; c < d; ++c)
+      variation[a * d + c] = point.normal[c] * shape[a];
   if (!coupled(group)) return;
   const std::size_t masters = points_.master()->nodes(group.master).size();
   const std::size_t first = variation.size() - masters * d;
   for (std::size_t b = 0; b < masters; ++b)
-    for (int c = 0; c < d; ++c) variation[first + b * d + c] = -point.normal[c] * point.master_shape[b];
+    for (int c = 0; c < d; ++c)
+      variation[first + b * d + c] = -point.normal[c] * point.master_shape[b];
 }
 
 void ContactForm::add_residual(const State& state, Residual& residual) {
@@ -239,9 +254,9 @@ void ContactForm::add_residual(const State& state, Residual& residual) {
   std::vector<PetscInt> equations;
   std::vector<double> values;
   for (const auto& group : groups()) {
-    const bool any_active = std::any_of(active_.begin() + static_cast<std::ptrdiff_t>(group.begin),
-                                        active_.begin() + static_cast<std::ptrdiff_t>(group.end),
-                                        [](std::uint8_t a) { return a != 0; });
+    const bool any_active =
+        std::any_of(active_.begin() + static_cast<std::ptrdiff_t>(group.begin),
+                    active_.begin() + static_cast<std::ptrdiff_t>(group.end), [](std::uint8_t a) { return a != 0; });
     const auto nodes = points_.slave().facet(group.facet);
     if (any_active) {
       // Slave forces are local; the master may be on another rank and may not be in the matrix pattern yet.
@@ -267,7 +282,8 @@ void ContactForm::add_residual(const State& state, Residual& residual) {
     const int field = std::get<Semismooth>(pair_.enforcement).field;
     const int vertices = num_vertices(points_.slave().types[group.facet]);
     equations.clear();
-    for (int a = 0; a < vertices; ++a) equations.push_back(layout_.extra_equation(field, nodes[a]));
+    for (int a = 0; a < vertices; ++a)
+      equations.push_back(layout_.extra_equation(field, nodes[a]));
     values.assign(vertices, 0.0);
     for (std::size_t i = group.begin; i < group.end; ++i) {
       const auto shape = points_.multiplier_shape(points[i]);
@@ -299,7 +315,8 @@ void ContactForm::add_tangent(const State& state, Tangent& tangent) {
       const double mm = point.weight * scale_ * scale_ / point.epsilon;
       if (is_unknown()) {
         any = true;
-        for (std::size_t a = 0; a < shape.size(); ++a) block[(first + a) * (n + 1)] -= mm * shape[a];
+        for (std::size_t a = 0; a < shape.size(); ++a)
+          block[(first + a) * (n + 1)] -= mm * shape[a];
       }
       if (!active_[i]) continue;
       any = true;
@@ -307,10 +324,12 @@ void ContactForm::add_tangent(const State& state, Tangent& tangent) {
       const double uu = point.weight * point.epsilon;
       for (std::size_t r = 0; r < n; ++r)
         if (variation[r] != 0.0)
-          for (std::size_t c = 0; c < n; ++c) block[r * n + c] += uu * variation[r] * variation[c];
+          for (std::size_t c = 0; c < n; ++c)
+            block[r * n + c] += uu * variation[r] * variation[c];
       if (!is_unknown()) continue;
       for (std::size_t a = 0; a < shape.size(); ++a) {
-        for (std::size_t b = 0; b < shape.size(); ++b) block[(first + a) * n + first + b] += mm * shape[a] * shape[b];
+        for (std::size_t b = 0; b < shape.size(); ++b)
+          block[(first + a) * n + first + b] += mm * shape[a] * shape[b];
         for (std::size_t r = 0; r < n; ++r) {
           const double coupling = point.weight * scale_ * shape[a] * variation[r];
           block[r * n + first + a] += coupling;
@@ -378,13 +397,15 @@ double ContactForm::work_of_displacement(const State& state) {
   return work;
 }
 
-// --- reports -------------------------------------------------------------------------------------------------------------
+// --- reports
+// -------------------------------------------------------------------------------------------------------------
 
 /// Multipliers where there are some; for penalty the lumped projection of σ onto the multiplier basis. Collective.
 std::vector<double> ContactForm::nodal_pressure() {
   std::vector<double> pressure(nodes_.nodes.size());
   if (!std::holds_alternative<Penalty>(pair_.enforcement)) {
-    for (std::size_t i = 0; i < pressure.size(); ++i) pressure[i] = -multipliers_[i];
+    for (std::size_t i = 0; i < pressure.size(); ++i)
+      pressure[i] = -multipliers_[i];
     return pressure;
   }
   std::vector<std::vector<double>> load(1, std::vector<double>(pressure.size(), 0.0)), mass = load;
@@ -402,7 +423,8 @@ std::vector<double> ContactForm::nodal_pressure() {
     space_.add(*part, global);
     space_.gather(global, *part);
   }
-  for (std::size_t i = 0; i < pressure.size(); ++i) pressure[i] = load[0][i] / mass[0][i];
+  for (std::size_t i = 0; i < pressure.size(); ++i)
+    pressure[i] = load[0][i] / mass[0][i];
   return pressure;
 }
 
@@ -437,13 +459,15 @@ ContactTotals ContactForm::totals(const State& state) {
     if (!active_[i]) continue;
     const auto& point = points[i];
     double force[3];
-    for (int c = 0; c < 3; ++c) sums[c] += force[c] = -sigma(i) * point.weight * point.normal[c];
+    for (int c = 0; c < 3; ++c)
+      sums[c] += force[c] = -sigma(i) * point.weight * point.normal[c];
     for (int c = 0; c < 3; ++c)
       sums[3 + c] += point.place[(c + 1) % 3] * force[(c + 2) % 3] - point.place[(c + 2) % 3] * force[(c + 1) % 3];
     sums[6] += point.weight;
     largest[1] = std::max(largest[1], -gap_[i] / point.size);
   }
-  for (const double pressure : nodal_pressure()) largest[0] = std::max(largest[0], pressure);
+  for (const double pressure : nodal_pressure())
+    largest[0] = std::max(largest[0], pressure);
   MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
   MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, layout_.mesh().comm);
   for (int c = 0; c < 3; ++c) {

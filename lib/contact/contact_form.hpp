@@ -1,4 +1,5 @@
-// One contact pair as a Form: adds ∫ σ_n δg_n over the slave surface, with λ from wherever the pair's enforcement has it.
+// One contact pair as a Form: adds ∫ σ_n δg_n over the slave surface, with λ from wherever the pair's enforcement has
+// it.
 #pragma once
 
 #include "contact/contact_pair.hpp"
@@ -12,15 +13,16 @@
 
 namespace amontons {
 
-/// The vertices of a slave surface, where its multipliers live (linear for elements of order 1 and 2: stable with both).
+/// The vertices of a slave surface, where its multipliers live (linear for elements of order 1 and 2: stable with
+/// both).
 NodeField multiplier_nodes(const Mesh& mesh, const std::string& pair, const std::string& slave);
 
 /// Totals of one pair over all ranks.
 struct ContactTotals {
-  std::array<double, 3> force{};   // on the slave
-  std::array<double, 3> moment{};  // of that force about the origin (reference places)
-  double area = 0.0;               // of slave points in contact, weighted
-  double max_pressure = 0.0;       // nodal
+  std::array<double, 3> force{};    // on the slave
+  std::array<double, 3> moment{};   // of that force about the origin (reference places)
+  double area = 0.0;                // of slave points in contact, weighted
+  double max_pressure = 0.0;        // nodal
   double largest_penetration = 0.0; // −g over the points in contact, relative to the facet size
 };
 
@@ -54,8 +56,8 @@ class ContactForm : public Form {
   ContactSamples samples(const State& state);
   /// Collective.
   ContactTotals totals(const State& state);
-  /// ∫ σ n·(u_slave − u_master): the contact tractions' virtual work on the displacement itself, over all ranks (a rigid
-  /// master's motion not included). Collective.
+  /// ∫ σ n·(u_slave − u_master): the contact tractions' virtual work on the displacement itself, over all ranks (a
+  /// rigid master's motion not included). Collective.
   double work_of_displacement(const State& state);
   /// The rigid master where it is now.
   std::array<double, 3> rigid_shift() const { return points_.rigid_shift(); }

@@ -1,4 +1,5 @@
-// What defines a contact pair, as plain data: surfaces, projection, integration, enforcement. Built by the application from the deck.
+// What defines a contact pair, as plain data: surfaces, projection, integration, enforcement. Built by the application
+// from the deck.
 #pragma once
 
 #include "base/expression.hpp"
@@ -38,9 +39,9 @@ struct ContactPair {
   std::variant<std::string, RigidMaster> master;
   Enforcement enforcement;
   ProjectionKind projection;
-  int integration_degree = 4;    // polynomials integrated exactly on a slave facet
-  double alpha = 1.0;            // dimensionless augmentation: ε = alpha · stiffness / h
-  double search_distance = 0.0;  // farther master facets are not looked at
+  int integration_degree = 4;   // polynomials integrated exactly on a slave facet
+  double alpha = 1.0;           // dimensionless augmentation: ε = alpha · stiffness / h
+  double search_distance = 0.0; // farther master facets are not looked at
   Space space = Space::Solid;
   /// A body of this pair is held by contact alone: then contact is guessed where the surfaces are nearest when nothing
   /// touches yet.

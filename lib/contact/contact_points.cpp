@@ -17,7 +17,8 @@ constexpr double rim_tolerance = 1e-6;
 
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) sum += a[i] * b[i];
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    sum += a[i] * b[i];
   return sum;
 }
 
@@ -36,7 +37,8 @@ std::vector<std::int32_t> corners_at(ElementType type, Feature feature, std::spa
   const auto reference = reference_nodes(type);
   const int corners = num_vertices(type);
   std::vector<std::pair<double, std::int32_t>> near;
-  for (int v = 0; v < corners; ++v) near.emplace_back(std::hypot(reference[2 * v] - xi[0], reference[2 * v + 1] - xi[1]), v);
+  for (int v = 0; v < corners; ++v)
+    near.emplace_back(std::hypot(reference[2 * v] - xi[0], reference[2 * v + 1] - xi[1]), v);
   if (feature == Feature::Vertex) return {std::min_element(near.begin(), near.end())->second};
   // The edge whose two corners see ξ in between: smallest detour.
   std::int32_t best = 0;
@@ -60,7 +62,8 @@ ContactPoints::ContactPoints(const DofLayout& layout, const ContactPair& pair)
   place_points();
   if (const auto* surface = std::get_if<std::string>(&pair.master)) {
     Box reach;
-    for (const auto& point : points_) reach.include(point.place);
+    for (const auto& point : points_)
+      reach.include(point.place);
     if (!reach.empty()) reach.inflate(pair.search_distance);
     if (mesh_.dim == 2) reach.low[2] = reach.high[2] = 0.0;
     master_ = std::make_unique<MasterSurface>(layout, mesh_.surfaces.at(*surface), reach);
@@ -84,7 +87,8 @@ void ContactPoints::place_points() {
       const double measure = facet_normal(type, positions, table.rule->point(q), normal);
       const auto shape = table.value(q);
       for (std::size_t a = 0; a < nodes.size(); ++a)
-        for (int c = 0; c < d; ++c) point.place[c] += shape[a] * positions[a * d + c];
+        for (int c = 0; c < d; ++c)
+          point.place[c] += shape[a] * positions[a * d + c];
       point.size = size;
       point.weight = table.rule->weights[q] * measure * circumference(pair_.space, point.place[0]);
       points_.push_back(point);
@@ -95,8 +99,10 @@ void ContactPoints::place_points() {
 
 void ContactPoints::search() {
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (std::holds_alternative<SlaveNormal>(pair_.projection)) find_along_normal(points_[i], slave_normals_[i]);
-    else find_closest(points_[i], slave_normals_[i]);
+    if (std::holds_alternative<SlaveNormal>(pair_.projection))
+      find_along_normal(points_[i], slave_normals_[i]);
+    else
+      find_closest(points_[i], slave_normals_[i]);
     set_epsilon(points_[i]);
   }
   std::stable_sort(points_.begin(), points_.end(), [](const ContactPoint& a, const ContactPoint& b) {
@@ -150,7 +156,8 @@ void ContactPoints::find_closest(ContactPoint& point, std::span<const double> sl
   if (facet == ContactPoint::none) return;
 
   std::array<double, 3> away{};
-  for (int c = 0; c < d; ++c) away[c] = x[c] - nearest.point[c];
+  for (int c = 0; c < d; ++c)
+    away[c] = x[c] - nearest.point[c];
   const double height = dot(away, nearest.normal);
   const double aside = std::sqrt(std::max(0.0, nearest.distance * nearest.distance - height * height));
   point.normal = nearest.normal;
@@ -165,7 +172,8 @@ void ContactPoints::find_closest(ContactPoint& point, std::span<const double> sl
       }
     } else if (nearest.distance > rim_tolerance * size) {
       const double sign = height < 0.0 ? -1.0 : 1.0;
-      for (int c = 0; c < d; ++c) point.normal[c] = sign * away[c] / nearest.distance;
+      for (int c = 0; c < d; ++c)
+        point.normal[c] = sign * away[c] / nearest.distance;
       point.gap0 = sign * nearest.distance;
     }
   }
@@ -179,14 +187,16 @@ void ContactPoints::find_along_normal(ContactPoint& point, std::span<const doubl
   Box box;
   for (const double s : {-pair_.search_distance, pair_.search_distance}) {
     std::array<double, 3> end{};
-    for (int c = 0; c < d; ++c) end[c] = x[c] + s * slave_normal[c];
+    for (int c = 0; c < d; ++c)
+      end[c] = x[c] + s * slave_normal[c];
     box.include(std::span<const double>(end.data(), d));
   }
   box.inflate(1e-9 * pair_.search_distance);
   master_->tree().query(box, found_);
   double best = pair_.search_distance;
   for (const auto candidate : found_) {
-    const auto projection = project_along(master_->type(candidate), master_->positions(candidate), x, slave_normal.first(d));
+    const auto projection =
+        project_along(master_->type(candidate), master_->positions(candidate), x, slave_normal.first(d));
     if (!projection.found || projection.distance > best) continue;
     if (dot(projection.normal, slave_normal.first(d)) > facing) continue;
     best = projection.distance;
@@ -201,7 +211,8 @@ void ContactPoints::find_along_normal(ContactPoint& point, std::span<const doubl
 
 void ContactPoints::move_rigid_master(double t) {
   const auto& rigid = std::get<RigidMaster>(pair_.master);
-  for (int c = 0; c < 3; ++c) shift_[c] = rigid.displacement[c] ? (*rigid.displacement[c])(t) : 0.0;
+  for (int c = 0; c < 3; ++c)
+    shift_[c] = rigid.displacement[c] ? (*rigid.displacement[c])(t) : 0.0;
   for (auto& point : points_) {
     const auto contact = signed_distance(rigid.shape, shift_, std::span<const double>(point.place.data(), mesh_.dim));
     point.gap0 = contact.gap;

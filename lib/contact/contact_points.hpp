@@ -14,12 +14,12 @@ namespace amontons {
 
 /// A quadrature point of the slave surface.
 struct ContactPoint {
-  std::int32_t facet;          // of the slave FacetSet
-  std::int32_t rule_point;     // index of the point in the facet's quadrature rule
-  std::int32_t master = none;  // facet of the MasterSurface, or one of the marks below
-  double weight = 0.0;         // area
-  double size = 0.0;           // h of the slave facet
-  double epsilon = 0.0;        // augmentation parameter, force / volume
+  std::int32_t facet;         // of the slave FacetSet
+  std::int32_t rule_point;    // index of the point in the facet's quadrature rule
+  std::int32_t master = none; // facet of the MasterSurface, or one of the marks below
+  double weight = 0.0;        // area
+  double size = 0.0;          // h of the slave facet
+  double epsilon = 0.0;       // augmentation parameter, force / volume
   double gap0 = 1e300;
   std::array<double, 3> place{};
   std::array<double, 3> normal{};

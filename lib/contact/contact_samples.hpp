@@ -15,15 +15,15 @@ namespace amontons {
 enum class ContactStatus : std::uint8_t { Open = 0, Stick = 1, Slip = 2 };
 
 struct ContactSamples {
-  std::vector<std::int32_t> facet;            // of the slave surface's FacetSet
-  std::vector<std::array<double, 2>> xi;      // on that facet
-  std::vector<std::array<double, 3>> place;   // reference position X of the point
-  std::vector<std::array<double, 3>> normal;  // n, out of the master; the traction on the slave is pressure * n
-  std::vector<double> weight;                 // area (per unit thickness in 2D, of the full turn when axisymmetric)
-  std::vector<double> facet_size;             // h
-  std::vector<double> pressure;               // -sigma_n >= 0
-  std::vector<double> gap;                    // g_n as the solver sees it; 1e300 where nothing is near
-  std::vector<ContactStatus> status;          // Slip where in frictionless contact
+  std::vector<std::int32_t> facet;           // of the slave surface's FacetSet
+  std::vector<std::array<double, 2>> xi;     // on that facet
+  std::vector<std::array<double, 3>> place;  // reference position X of the point
+  std::vector<std::array<double, 3>> normal; // n, out of the master; the traction on the slave is pressure * n
+  std::vector<double> weight;                // area (per unit thickness in 2D, of the full turn when axisymmetric)
+  std::vector<double> facet_size;            // h
+  std::vector<double> pressure;              // -sigma_n >= 0
+  std::vector<double> gap;                   // g_n as the solver sees it; 1e300 where nothing is near
+  std::vector<ContactStatus> status;         // Slip where in frictionless contact
   /// Nodal pressure on the slave surface at the local mesh nodes `nodes` (owned vertices): multipliers, or for penalty
   /// the projected pressure.
   std::vector<std::int32_t> nodes;

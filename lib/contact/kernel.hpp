@@ -1,7 +1,7 @@
 // The contact law at a point, the same for every formulation (they differ only in where λ comes from):
 //   λ̂ = λ + ε g,  contact when λ̂ < 0,  σ = min(0, λ̂)
-// the derivative of the augmented Lagrangian (σ² − λ²) / (2 ε) of Alart and Curnier (1991), Comput. Methods Appl. Mech. Eng. 92,
-// 353-375, with the sign of λ that is negative in compression. Pure functions of numbers.
+// the derivative of the augmented Lagrangian (σ² − λ²) / (2 ε) of Alart and Curnier (1991), Comput. Methods Appl. Mech.
+// Eng. 92, 353-375, with the sign of λ that is negative in compression. Pure functions of numbers.
 #pragma once
 
 #include <algorithm>

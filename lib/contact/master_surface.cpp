@@ -10,7 +10,8 @@ namespace {
 
 Box facet_box(const Mesh& mesh, std::span<const std::int32_t> nodes) {
   Box box;
-  for (const auto node : nodes) box.include(mesh.position(node));
+  for (const auto node : nodes)
+    box.include(mesh.position(node));
   return box;
 }
 
@@ -26,9 +27,11 @@ std::vector<Number> exchange(MPI_Comm comm, MPI_Datatype type, const std::vector
     outgoing.insert(outgoing.end(), messages[rank].begin(), messages[rank].end());
   }
   MPI_Alltoall(send.data(), 1, MPI_INT, receive.data(), 1, MPI_INT, comm);
-  for (int rank = 0; rank < ranks; ++rank) receive_at[rank + 1] = receive_at[rank] + receive[rank];
+  for (int rank = 0; rank < ranks; ++rank)
+    receive_at[rank + 1] = receive_at[rank] + receive[rank];
   std::vector<Number> incoming(receive_at[ranks]);
-  MPI_Alltoallv(outgoing.data(), send.data(), send_at.data(), type, incoming.data(), receive.data(), receive_at.data(), type, comm);
+  MPI_Alltoallv(outgoing.data(), send.data(), send_at.data(), type, incoming.data(), receive.data(), receive_at.data(),
+                type, comm);
   return incoming;
 }
 
@@ -57,7 +60,8 @@ MasterSurface::MasterSurface(const DofLayout& layout, const FacetSet& surface, c
       numbers[rank].push_back(surface.bodies[f]);
       for (const auto node : surface.facet(f)) {
         numbers[rank].push_back(mesh.global_node(node));
-        for (int c = 0; c < dim_; ++c) numbers[rank].push_back(layout.equation(node, c));
+        for (int c = 0; c < dim_; ++c)
+          numbers[rank].push_back(layout.equation(node, c));
         const auto place = mesh.position(node);
         positions[rank].insert(positions[rank].end(), place.begin(), place.end());
       }
@@ -67,7 +71,8 @@ MasterSurface::MasterSurface(const DofLayout& layout, const FacetSet& surface, c
   find_rim();
   std::vector<Box> boxes(num_facets());
   for (std::int32_t f = 0; f < num_facets(); ++f)
-    for (std::size_t a = 0; a < nodes(f).size(); ++a) boxes[f].include(this->positions(f).subspan(a * dim_, dim_));
+    for (std::size_t a = 0; a < nodes(f).size(); ++a)
+      boxes[f].include(this->positions(f).subspan(a * dim_, dim_));
   tree_ = BoxTree(boxes);
 
   displacement_.assign(equations_.size(), 0.0);
@@ -91,7 +96,8 @@ void MasterSurface::receive(std::span<const std::int64_t> numbers, std::span<con
       const auto [place, is_new] = known.try_emplace(numbers[at], num_nodes());
       if (is_new) {
         global_nodes_.push_back(numbers[at]);
-        for (int c = 0; c < dim_; ++c) equations_.push_back(static_cast<PetscInt>(numbers[at + 1 + c]));
+        for (int c = 0; c < dim_; ++c)
+          equations_.push_back(static_cast<PetscInt>(numbers[at + 1 + c]));
       }
       nodes_.push_back(place->second);
     }
@@ -103,7 +109,8 @@ void MasterSurface::find_rim() {
   if (dim_ == 2) {
     std::vector<int> uses(num_nodes(), 0);
     for (std::int32_t f = 0; f < num_facets(); ++f)
-      for (int v = 0; v < 2; ++v) ++uses[nodes(f)[v]];
+      for (int v = 0; v < 2; ++v)
+        ++uses[nodes(f)[v]];
     for (std::int32_t node = 0; node < num_nodes(); ++node)
       if (uses[node] == 1) rim_.push_back(node);
     return;

@@ -1,5 +1,5 @@
-// The master facets that this rank's slave facets may meet: its own and copies ("ghosts") of other ranks' facets, sent once to
-// every rank whose slave box they meet, with a scatter that brings their nodes' displacements.
+// The master facets that this rank's slave facets may meet: its own and copies ("ghosts") of other ranks' facets, sent
+// once to every rank whose slave box they meet, with a scatter that brings their nodes' displacements.
 #pragma once
 
 #include "fe/dof_layout.hpp"
@@ -14,8 +14,8 @@ namespace amontons {
 
 class MasterSurface {
  public:
-  /// Gathers the facets of `surface` (a name of Mesh::surfaces) whose boxes meet `reach`, this rank's region of interest.
-  /// Collective.
+  /// Gathers the facets of `surface` (a name of Mesh::surfaces) whose boxes meet `reach`, this rank's region of
+  /// interest. Collective.
   MasterSurface(const DofLayout& layout, const FacetSet& surface, const Box& reach);
 
   std::int32_t num_facets() const { return static_cast<std::int32_t>(types_.size()); }
@@ -28,7 +28,8 @@ class MasterSurface {
   }
   /// Reference positions of a facet's nodes (number of nodes x dim).
   std::span<const double> positions(std::int32_t facet) const {
-    return std::span(facet_positions_).subspan(std::size_t(offsets_[facet]) * dim_, std::size_t(offsets_[facet + 1] - offsets_[facet]) * dim_);
+    return std::span(facet_positions_)
+        .subspan(std::size_t(offsets_[facet]) * dim_, std::size_t(offsets_[facet + 1] - offsets_[facet]) * dim_);
   }
   /// Displacement equations of a node, dim of them.
   std::span<const PetscInt> equations(std::int32_t node) const {
@@ -58,8 +59,8 @@ class MasterSurface {
   std::vector<std::int64_t> global_nodes_;
   std::vector<PetscInt> equations_;
   std::vector<double> displacement_;
-  std::vector<std::int32_t> rim_;                  // nodes on the rim in 2D, sorted
-  std::vector<std::array<std::int32_t, 2>> rims_;  // edges on the rim in 3D, sorted
+  std::vector<std::int32_t> rim_;                 // nodes on the rim in 2D, sorted
+  std::vector<std::array<std::int32_t, 2>> rims_; // edges on the rim in 3D, sorted
   BoxTree tree_;
   VecHandle local_;
   ScatterHandle scatter_;

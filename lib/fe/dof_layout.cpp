@@ -35,7 +35,8 @@ DofLayout::DofLayout(const Mesh& mesh, std::vector<TiedGroup> tied, std::span<co
   equations_.resize(std::size_t(mesh.num_local()) * d);
   for (std::int32_t node = 0; node < mesh.num_local(); ++node) {
     const auto in_owner = static_cast<PetscInt>(mesh.global_node(node)) - node_offsets_[owner(node)];
-    for (int c = 0; c < d; ++c) equations_[std::size_t(node) * d + c] = equation_offsets_[owner(node)] + in_owner * d + c;
+    for (int c = 0; c < d; ++c)
+      equations_[std::size_t(node) * d + c] = equation_offsets_[owner(node)] + in_owner * d + c;
   }
   for (auto& field : extra_)
     for (std::int32_t node = 0; node < mesh.num_local(); ++node)
@@ -47,7 +48,8 @@ DofLayout::DofLayout(const Mesh& mesh, std::vector<TiedGroup> tied, std::span<co
   for (const auto& [group, component] : tied_) {
     // The lowest equation of the group speaks for all of it.
     PetscInt lowest = std::numeric_limits<PetscInt>::max();
-    for (const auto node : mesh.node_groups.at(group)) lowest = std::min(lowest, equation(node, component));
+    for (const auto node : mesh.node_groups.at(group))
+      lowest = std::min(lowest, equation(node, component));
     MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPIU_INT, MPI_MIN, mesh.comm);
     tied_equations_.push_back(lowest);
     for (const auto node : mesh.node_groups.at(group)) {

@@ -34,7 +34,9 @@ class DofLayout {
   PetscInt num_extra() const { return num_extra_global_; }
 
   /// Equation of a displacement component of a local node, after ties: all members of a tied group share one.
-  PetscInt equation(std::int32_t node, int component) const { return equations_[std::size_t(node) * dim() + component]; }
+  PetscInt equation(std::int32_t node, int component) const {
+    return equations_[std::size_t(node) * dim() + component];
+  }
   /// dim() equations per local node, node by node.
   std::span<const PetscInt> equations() const { return equations_; }
   /// Equation of extra field `field` at a local node, -1 where it has none.
@@ -60,7 +62,8 @@ class DofLayout {
   VecHandle new_vector() const;
   /// Displacement of all local nodes (num_local x dim) from a global vector, ties and ghosts included. Collective.
   void gather_displacement(Vec global, std::span<double> local) const;
-  /// Adds a local array (num_local x dim) of nodal forces into a global vector: sums over ranks and tied groups. Collective.
+  /// Adds a local array (num_local x dim) of nodal forces into a global vector: sums over ranks and tied groups.
+  /// Collective.
   void add_forces(std::span<const double> local, Vec global) const;
 
  private:

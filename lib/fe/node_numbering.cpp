@@ -25,7 +25,8 @@ std::vector<PetscInt> rank_offsets(MPI_Comm comm, PetscInt num_owned) {
   MPI_Comm_size(comm, &ranks);
   std::vector<PetscInt> offsets(ranks + 1, 0);
   MPI_Allgather(&num_owned, 1, MPIU_INT, offsets.data() + 1, 1, MPIU_INT, comm);
-  for (int rank = 0; rank < ranks; ++rank) offsets[rank + 1] += offsets[rank];
+  for (int rank = 0; rank < ranks; ++rank)
+    offsets[rank + 1] += offsets[rank];
   return offsets;
 }
 
@@ -46,13 +47,15 @@ std::vector<std::vector<PetscInt>> number_node_fields(const Mesh& mesh, std::spa
     AMT_PETSC(VecSet(global, -1.0));
     {
       VecArray values(global);
-      for (const auto node : owned) values[node] = static_cast<double>(num_owned++);
+      for (const auto node : owned)
+        values[node] = static_cast<double>(num_owned++);
     }
     AMT_PETSC(VecScatterBegin(scatter, global, local, INSERT_VALUES, SCATTER_FORWARD));
     AMT_PETSC(VecScatterEnd(scatter, global, local, INSERT_VALUES, SCATTER_FORWARD));
     VecReader values(local);
     auto& number = numbers.emplace_back(mesh.num_local());
-    for (std::int32_t node = 0; node < mesh.num_local(); ++node) number[node] = static_cast<PetscInt>(values[node]);
+    for (std::int32_t node = 0; node < mesh.num_local(); ++node)
+      number[node] = static_cast<PetscInt>(values[node]);
   }
   return numbers;
 }
@@ -90,7 +93,8 @@ void NodeSpace::gather(Vec global, std::vector<std::vector<double>>& local) cons
   PetscInt next = 0;
   for (std::size_t f = 0; f < fields_.size(); ++f) {
     local[f].resize(fields_[f].nodes.size());
-    for (auto& value : local[f]) value = values[next++];
+    for (auto& value : local[f])
+      value = values[next++];
   }
 }
 
@@ -99,7 +103,8 @@ void NodeSpace::add(const std::vector<std::vector<double>>& local, Vec global) c
     VecArray values(local_);
     PetscInt next = 0;
     for (const auto& field : local)
-      for (const double value : field) values[next++] = value;
+      for (const double value : field)
+        values[next++] = value;
   }
   AMT_PETSC(VecScatterBegin(scatter_, local_, global, ADD_VALUES, SCATTER_REVERSE));
   AMT_PETSC(VecScatterEnd(scatter_, local_, global, ADD_VALUES, SCATTER_REVERSE));

@@ -12,6 +12,8 @@ namespace {
 
 /// A scene that has been unloaded completely has no forces left but those that are small against earlier ones.
 constexpr double unloaded_ratio = 1e-3;
+/// Machine epsilons of rounding in a sum over the neighbours of a node.
+constexpr double rounding_factor = 8.0;
 
 } // namespace
 
@@ -21,10 +23,15 @@ class Problem::MatrixTangent : public Tangent {
   MatrixTangent(const Problem& problem, Mat matrix) : problem_(problem), matrix_(matrix) {}
   void add(std::span<const PetscInt> equations, std::span<const double> block) override {
     rows_.resize(equations.size());
-    for (std::size_t i = 0; i < equations.size(); ++i) rows_[i] = dropped(equations[i]) ? -1 : equations[i];
+    for (std::size_t i = 0; i < equations.size(); ++i)
+      rows_[i] = dropped(equations[i]) ? -1 : equations[i];
+    for (std::size_t i = 0; i < equations.size(); ++i)
+      diagonal_sum_ += std::abs(block[i * (equations.size() + 1)]);
     const auto size = static_cast<PetscInt>(rows_.size());
     AMT_PETSC(MatSetValues(matrix_, size, rows_.data(), size, rows_.data(), block.data(), ADD_VALUES));
   }
+  /// Σ |diagonal| of all that was added on this rank.
+  double diagonal_sum() const { return diagonal_sum_; }
 
  private:
   bool dropped(PetscInt equation) const {
@@ -36,6 +43,7 @@ class Problem::MatrixTangent : public Tangent {
   const Problem& problem_;
   Mat matrix_;
   std::vector<PetscInt> rows_;
+  double diagonal_sum_ = 0.0;
 };
 
 Problem::Problem(const DofLayout& layout, std::vector<std::unique_ptr<Form>> forms,
@@ -50,17 +58,19 @@ void Problem::find_prescribed() {
   prescribed_flags_.assign(layout_.num_owned(), 0);
   const auto& tied = layout_.tied();
   std::vector<PetscInt> tied_equations;
-  for (std::size_t i = 0; i < tied.size(); ++i) tied_equations.push_back(layout_.tied_equation(i));
+  for (std::size_t i = 0; i < tied.size(); ++i)
+    tied_equations.push_back(layout_.tied_equation(i));
   together(comm(), [&] {
     for (const auto& condition : prescribed_)
       for (const auto node : mesh.node_groups.at(condition.group)) {
         const PetscInt equation = layout_.equation(node, condition.component);
         const auto clash = std::find(tied_equations.begin(), tied_equations.end(), equation);
         if (clash != tied_equations.end())
-          throw UserError("boundary: the groups '" + condition.group + "' (displacement " + "xyz"[condition.component] +
-                          ") and '" + tied[clash - tied_equations.begin()].group +
-                          "' (resultant in the same direction) share a node; a node cannot be prescribed and moved by a "
-                          "force at once. Take the shared nodes out of one of the groups.");
+          throw UserError(
+              "boundary: the groups '" + condition.group + "' (displacement " + "xyz"[condition.component] + ") and '" +
+              tied[clash - tied_equations.begin()].group +
+              "' (resultant in the same direction) share a node; a node cannot be prescribed and moved by a "
+              "force at once. Take the shared nodes out of one of the groups.");
         if (node < mesh.num_owned) prescribed_flags_[equation - layout_.first_equation()] = 1;
       }
   });
@@ -94,12 +104,14 @@ void Problem::commit(Vec unknowns) {
   largest_accepted_force_ = std::max(largest_accepted_force_, force_scale_);
   accepted_time_ = time_;
   const auto state = state_at(unknowns);
-  for (const auto& form : forms_) form->commit(state);
+  for (const auto& form : forms_)
+    form->commit(state);
 }
 
 void Problem::roll_back() {
   time_ = accepted_time_;
-  for (const auto& form : forms_) form->roll_back();
+  for (const auto& form : forms_)
+    form->roll_back();
 }
 
 State Problem::state_at(Vec unknowns) {
@@ -107,7 +119,15 @@ State Problem::state_at(Vec unknowns) {
   return {.time = time_, .unknowns = unknowns, .displacement = displacement_, .first_guess = first_guess_};
 }
 
+void Problem::estimate_rounding(Vec unknowns) {
+  if (!diagonal_) return;
+  AMT_PETSC(VecPointwiseMult(scratch_, diagonal_, unknowns));
+  AMT_PETSC(VecNorm(scratch_, NORM_2, &rounding_));
+  rounding_ *= rounding_factor * PETSC_MACHINE_EPSILON;
+}
+
 void Problem::residual(Vec unknowns, Vec result) {
+  estimate_rounding(unknowns);
   const auto state = state_at(unknowns);
   AMT_PETSC(VecSet(raw_, 0.0));
   Residual residual(layout_, raw_);
@@ -116,15 +136,18 @@ void Problem::residual(Vec unknowns, Vec result) {
   for (std::size_t i = 0; i < forms_.size(); ++i) {
     const Phase phase(forms_[i]->name());
     forms_[i]->add_residual(state, residual);
-    for (const double force : residual.nodal()) squares[i] += force * force;
+    for (const double force : residual.nodal())
+      squares[i] += force * force;
   }
   MPI_Allreduce(MPI_IN_PLACE, squares.data(), static_cast<int>(squares.size()), MPI_DOUBLE, MPI_SUM, comm());
-  for (const double square : squares) largest = std::max(largest, square);
+  for (const double square : squares)
+    largest = std::max(largest, square);
   residual.finish();
   AMT_PETSC(VecCopy(raw_, result));
   {
     VecArray values(result);
-    for (const PetscInt equation : prescribed_equations_) values[equation - layout_.first_equation()] = 0.0;
+    for (const PetscInt equation : prescribed_equations_)
+      values[equation - layout_.first_equation()] = 0.0;
   }
   double norm = 0.0;
   AMT_PETSC(VecNorm(raw_, NORM_2, &norm));
@@ -150,14 +173,16 @@ MatHandle Problem::new_matrix() {
 void Problem::build_pattern(Mat matrix) {
   const Phase phase("pattern");
   Sparsity sparsity(layout_);
-  for (const auto& form : forms_) form->couple(sparsity);
+  for (const auto& form : forms_)
+    form->couple(sparsity);
 
   // Which of the other ranks' equations that our forms touch are prescribed there?
   const auto foreign = sparsity.foreign_equations();
   VecHandle flags = layout_.new_vector(), ours;
   {
     VecArray values(flags);
-    for (PetscInt i = 0; i < values.size(); ++i) values[i] = prescribed_flags_[i];
+    for (PetscInt i = 0; i < values.size(); ++i)
+      values[i] = prescribed_flags_[i];
   }
   const auto size = static_cast<PetscInt>(foreign.size());
   AMT_PETSC(VecCreateSeq(PETSC_COMM_SELF, size, ours.put()));
@@ -173,16 +198,13 @@ void Problem::build_pattern(Mat matrix) {
     if (values[i] != 0.0) foreign_prescribed_.push_back(foreign[i]);
 
   sparsity.preallocate(matrix);
-  AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_TRUE));
-  pattern_ready_ = true;
   constant_ready_ = tangent_ready_ = false;
 }
 
-template <class Selector>
-void Problem::add_tangents(const State& state, Mat matrix, Selector selected) {
+void Problem::add_changing(const State& state, Mat matrix) {
   MatrixTangent tangent(*this, matrix);
   for (const auto& form : forms_)
-    if (selected(*form)) {
+    if (!form->tangent_is_constant()) {
       const Phase phase(form->name());
       form->add_tangent(state, tangent);
     }
@@ -191,28 +213,24 @@ void Problem::add_tangents(const State& state, Mat matrix, Selector selected) {
   AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
 }
 
-/// The constant part with the whole pattern in place, kept inside the matrix (MatStoreValues) for later tangents.
+/// The constant part with the whole pattern in place, kept inside the matrix (MatStoreValues) for later tangents. One
+/// assembly for all: PETSc gives preallocated places away that an assembly finds unused.
 void Problem::assemble_constant(const State& state, Mat matrix) {
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_TRUE));
-  add_tangents(state, matrix, [](const Form& form) { return form.tangent_is_constant(); });
-  // Prescribed and idle equations get the mean diagonal, so that they neither spoil the conditioning nor the scaling.
-  VecHandle diagonal = layout_.new_vector();
-  AMT_PETSC(MatGetDiagonal(matrix, diagonal));
-  double sums[2] = {0.0, 0.0};
-  {
-    VecReader values(diagonal);
-    for (PetscInt i = 0; i < values.size(); ++i)
-      if (values[i] != 0.0) {
-        sums[0] += std::abs(values[i]);
-        sums[1] += 1.0;
-      }
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm());
-  diagonal_scale_ = sums[1] > 0.0 ? sums[0] / sums[1] : 1.0;
+  AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_TRUE));
+  MatrixTangent tangent(*this, matrix);
+  for (const auto& form : forms_)
+    if (form->tangent_is_constant()) {
+      const Phase phase(form->name());
+      form->add_tangent(state, tangent);
+    }
+  // Prescribed and idle equations get the mean diagonal, so that they spoil neither conditioning nor scaling.
+  double mean = tangent.diagonal_sum();
+  MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPI_DOUBLE, MPI_SUM, comm());
+  mean = mean > 0.0 ? mean / static_cast<double>(layout_.num_global()) : 1.0;
   for (const auto& equations : {std::span<const PetscInt>(prescribed_equations_), std::span(layout_.idle_equations())})
     for (const PetscInt equation : equations)
-      AMT_PETSC(MatSetValue(matrix, equation, equation, diagonal_scale_, ADD_VALUES));
-  // Zeros of the changing forms complete the pattern before the values are stored.
+      AMT_PETSC(MatSetValue(matrix, equation, equation, mean, ADD_VALUES));
   class Zeros : public Coupling {
    public:
     explicit Zeros(MatrixTangent& tangent) : tangent_(tangent) {}
@@ -225,14 +243,17 @@ void Problem::assemble_constant(const State& state, Mat matrix) {
     MatrixTangent& tangent_;
     std::vector<double> zeros_;
   };
-  MatrixTangent tangent(*this, matrix);
   Zeros zeros(tangent);
   for (const auto& form : forms_)
     if (!form->tangent_is_constant()) form->couple(zeros);
+  const Phase phase("matrix");
   AMT_PETSC(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_FALSE));
   AMT_PETSC(MatStoreValues(matrix));
+  diagonal_ = layout_.new_vector();
+  scratch_ = layout_.new_vector();
+  AMT_PETSC(MatGetDiagonal(matrix, diagonal_));
   constant_ready_ = true;
 }
 
@@ -246,9 +267,11 @@ bool Problem::tangent(Vec unknowns, Mat matrix) {
   first_guess_ = false;
   if (any_rank(coupling_changed)) build_pattern(matrix);
   if (!any_rank(tangent_changed || !tangent_ready_)) return false;
-  if (constant_ready_) AMT_PETSC(MatRetrieveValues(matrix));
-  else assemble_constant(state, matrix);
-  add_tangents(state, matrix, [](const Form& form) { return !form.tangent_is_constant(); });
+  if (constant_ready_)
+    AMT_PETSC(MatRetrieveValues(matrix));
+  else
+    assemble_constant(state, matrix);
+  add_changing(state, matrix);
   if (tangent_is_symmetric()) AMT_PETSC(MatSetOption(matrix, MAT_SYMMETRIC, PETSC_TRUE));
   tangent_ready_ = true;
   return true;
@@ -257,7 +280,8 @@ bool Problem::tangent(Vec unknowns, Mat matrix) {
 double Problem::stored_energy(Vec unknowns) {
   const auto state = state_at(unknowns);
   double energy = 0.0;
-  for (const auto& form : forms_) energy += form->stored_energy(state);
+  for (const auto& form : forms_)
+    energy += form->stored_energy(state);
   MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, comm());
   return energy;
 }

@@ -49,9 +49,14 @@ class Problem {
   /// values: num_local x dim. For tied groups the sum over the group stands at each of its nodes. Collective.
   std::vector<double> unbalanced_forces() const;
   Vec raw_residual() const { return raw_; }
-  /// Norm of the forces that met in the last residual (internal, contact, loads, reactions): what an out-of-balance force
-  /// is small against. Not below a thousandth of what it was in any accepted state. Same on every rank.
+  /// Norm of the forces that met in the last residual (internal, contact, loads, reactions): what an out-of-balance
+  /// force is small against. Not below a thousandth of what it was in any accepted state. Same on every rank.
   double force_scale() const { return force_scale_; }
+
+  /// What of the last residual may be rounding: some machine epsilons times the norm of (diagonal of the constant
+  /// tangent x unknowns). A stiff body moved by a soft one has internal forces that cancel far more than the load. Zero
+  /// before the first tangent. Same on every rank.
+  double rounding() const { return rounding_; }
 
   /// A matrix for the tangent. Collective.
   MatHandle new_matrix();
@@ -68,11 +73,11 @@ class Problem {
  private:
   class MatrixTangent;
   void find_prescribed();
+  void estimate_rounding(Vec unknowns);
   void build_pattern(Mat matrix);
   void assemble_constant(const State& state, Mat matrix);
   bool any_rank(bool mine) const;
-  template <class Selector>
-  void add_tangents(const State& state, Mat matrix, Selector selected);
+  void add_changing(const State& state, Mat matrix);
 
   const DofLayout& layout_;
   std::vector<std::unique_ptr<Form>> forms_;
@@ -83,10 +88,11 @@ class Problem {
   VecHandle raw_;
   std::vector<double> displacement_;
   double time_ = 0.0, accepted_time_ = 0.0;
+  VecHandle diagonal_, scratch_; // of the constant tangent
+  double rounding_ = 0.0;
   double force_scale_ = 0.0, largest_accepted_force_ = 0.0;
-  double diagonal_scale_ = 1.0;
   bool first_guess_ = false;
-  bool pattern_ready_ = false, constant_ready_ = false, tangent_ready_ = false;
+  bool constant_ready_ = false, tangent_ready_ = false;
 };
 
 } // namespace amontons

@@ -6,7 +6,8 @@ namespace amontons {
 
 Sparsity::Sparsity(const DofLayout& layout) : layout_(layout), rows_(layout.num_owned_blocks()) {
   // Every block couples to itself: prescribed and idle equations keep a diagonal.
-  for (PetscInt b = 0; b < layout.num_owned_blocks(); ++b) rows_[b].push_back(layout.first_block() + b);
+  for (PetscInt b = 0; b < layout.num_owned_blocks(); ++b)
+    rows_[b].push_back(layout.first_block() + b);
 }
 
 void Sparsity::add(std::span<const PetscInt> equations) {
@@ -20,7 +21,8 @@ void Sparsity::add(std::span<const PetscInt> equations) {
   std::sort(blocks_.begin(), blocks_.end());
   blocks_.erase(std::unique(blocks_.begin(), blocks_.end()), blocks_.end());
   const PetscInt first = layout_.first_block(), end = first + layout_.num_owned_blocks();
-  for (const PetscInt block : blocks_) insert(block >= first && block < end ? rows_[block - first] : foreign_[block], blocks_);
+  for (const PetscInt block : blocks_)
+    insert(block >= first && block < end ? rows_[block - first] : foreign_[block], blocks_);
 }
 
 void Sparsity::insert(Row& row, const std::vector<PetscInt>& blocks) {
@@ -33,7 +35,8 @@ void Sparsity::insert(Row& row, const std::vector<PetscInt>& blocks) {
 std::vector<PetscInt> Sparsity::foreign_equations() const {
   std::vector<PetscInt> equations;
   for (const auto& [block, row] : foreign_)
-    for (PetscInt i = 0; i < layout_.block_size(block); ++i) equations.push_back(layout_.block_begin(block) + i);
+    for (PetscInt i = 0; i < layout_.block_size(block); ++i)
+      equations.push_back(layout_.block_begin(block) + i);
   std::sort(equations.begin(), equations.end());
   return equations;
 }
@@ -51,7 +54,8 @@ void Sparsity::exchange() {
     message.insert(message.end(), row.begin(), row.end());
   }
   std::vector<int> send_counts(ranks), receive_counts(ranks), send_offsets(ranks + 1, 0), receive_offsets(ranks + 1, 0);
-  for (int rank = 0; rank < ranks; ++rank) send_counts[rank] = static_cast<int>(messages[rank].size());
+  for (int rank = 0; rank < ranks; ++rank)
+    send_counts[rank] = static_cast<int>(messages[rank].size());
   MPI_Alltoall(send_counts.data(), 1, MPI_INT, receive_counts.data(), 1, MPI_INT, comm);
   std::vector<PetscInt> outgoing;
   for (int rank = 0; rank < ranks; ++rank) {
@@ -78,7 +82,8 @@ void Sparsity::preallocate(Mat matrix) {
   std::vector<PetscInt> on_rank(layout_.num_owned()), off_rank(layout_.num_owned());
   for (PetscInt b = 0; b < layout_.num_owned_blocks(); ++b) {
     PetscInt inside = 0, outside = 0;
-    for (const PetscInt column : rows_[b]) (column >= first && column < end ? inside : outside) += layout_.block_size(column);
+    for (const PetscInt column : rows_[b])
+      (column >= first && column < end ? inside : outside) += layout_.block_size(column);
     const PetscInt begin = layout_.block_begin(first + b) - layout_.first_equation();
     for (PetscInt i = 0; i < layout_.block_size(first + b); ++i) {
       on_rank[begin + i] = inside;

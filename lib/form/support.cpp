@@ -16,14 +16,16 @@ struct BodyBox {
   std::array<double, 3> low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   double diagonal(int dim) const {
     double sum = 0.0;
-    for (int c = 0; c < dim; ++c) sum += (high[c] - low[c]) * (high[c] - low[c]);
+    for (int c = 0; c < dim; ++c)
+      sum += (high[c] - low[c]) * (high[c] - low[c]);
     return std::sqrt(sum);
   }
 };
 
 std::vector<std::set<std::int32_t>> nodes_of_bodies(const Mesh& mesh) {
   std::vector<std::set<std::int32_t>> nodes(mesh.bodies.size());
-  for (const auto& block : mesh.blocks) nodes[block.body].insert(block.nodes.begin(), block.nodes.end());
+  for (const auto& block : mesh.blocks)
+    nodes[block.body].insert(block.nodes.begin(), block.nodes.end());
   return nodes;
 }
 
@@ -80,7 +82,8 @@ std::vector<std::uint8_t> find_floating_bodies(const Mesh& mesh, const std::vect
           r[c] = (mesh.position(node)[c] - 0.5 * (boxes[b].low[c] + boxes[b].high[c])) / size;
         const auto motion = rigid_motions(mesh.dim, condition.component, r, axisymmetric);
         for (int i = 0; i < 6; ++i)
-          for (int j = 0; j < 6; ++j) gram(i, j) += motion[i] * motion[j];
+          for (int j = 0; j < 6; ++j)
+            gram(i, j) += motion[i] * motion[j];
       }
     MPI_Allreduce(MPI_IN_PLACE, gram.data(), 36, MPI_DOUBLE, MPI_SUM, mesh.comm);
     const Eigen::MatrixXd part = gram.topLeftCorner(motions, motions);
@@ -97,7 +100,8 @@ SupportForm::SupportForm(const DofLayout& layout, const std::vector<std::uint8_t
   const auto nodes = nodes_of_bodies(mesh);
   const auto boxes = boxes_of_bodies(mesh, nodes);
   for (std::size_t b = 0; b < nodes.size(); ++b) {
-    std::int64_t count = std::count_if(nodes[b].begin(), nodes[b].end(), [&](auto node) { return node < mesh.num_owned; });
+    std::int64_t count =
+        std::count_if(nodes[b].begin(), nodes[b].end(), [&](auto node) { return node < mesh.num_owned; });
     MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, mesh.comm);
     if (!floating[b]) continue;
     const double total = support_ratio * stiffness[b] * std::pow(boxes[b].diagonal(mesh.dim), mesh.dim - 2);

@@ -2,6 +2,7 @@
 
 #include "base/timer.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace amontons {
@@ -10,26 +11,31 @@ namespace {
 
 /// Unknowns above which a displacement-only problem goes to CG with multigrid rather than to a factorization.
 constexpr PetscInt multigrid_from_2d = 1'000'000;
-constexpr PetscInt multigrid_from_3d = 200'000;
-
-/// Out-of-balance forces below this part of the forces in play are rounding.
-constexpr double rounding = 1e-15;
+constexpr PetscInt multigrid_from_3d = 500'000;
 
 std::string in_words(SNESConvergedReason reason, double relative) {
   switch (reason) {
-  case SNES_DIVERGED_FNORM_NAN: return "the residual is not a number";
+  case SNES_DIVERGED_FNORM_NAN:
+    return "the residual is not a number";
   case SNES_DIVERGED_MAX_IT:
     return "Newton's method used all its iterations; the out-of-balance force is still " + std::to_string(relative) +
            " of the forces in play (-snes_max_it, smaller increments or `enforce: {uzawa: {}}` may help)";
   case SNES_DIVERGED_LINEAR_SOLVE:
-    return "the linear solver failed: the tangent is singular (a body that nothing holds?) or, for an iterative solver, "
+    return "the linear solver failed: the tangent is singular (a body that nothing holds?) or, for an iterative "
+           "solver, "
            "the tolerance was not reached (-ksp_converged_reason tells; -pc_type lu is the robust choice)";
-  case SNES_DIVERGED_LINE_SEARCH: return "the line search found no decrease";
-  case SNES_DIVERGED_DTOL: return "the residual grew without bound";
-  case SNES_DIVERGED_FUNCTION_DOMAIN: return "the residual could not be evaluated";
-  case SNES_DIVERGED_FUNCTION_COUNT: return "too many residual evaluations";
-  case SNES_BREAKOUT_INNER_ITER: return "interrupted";
-  default: return std::string("SNES: ") + SNESConvergedReasons[reason];
+  case SNES_DIVERGED_LINE_SEARCH:
+    return "the line search found no decrease";
+  case SNES_DIVERGED_DTOL:
+    return "the residual grew without bound";
+  case SNES_DIVERGED_FUNCTION_DOMAIN:
+    return "the residual could not be evaluated";
+  case SNES_DIVERGED_FUNCTION_COUNT:
+    return "too many residual evaluations";
+  case SNES_BREAKOUT_INNER_ITER:
+    return "interrupted";
+  default:
+    return std::string("SNES: ") + SNESConvergedReasons[reason];
   }
 }
 
@@ -54,7 +60,8 @@ std::string choose_linear_solver(const Problem& problem) {
     default_option("-ksp_rtol", "1e-8");
     default_option("-ksp_max_it", "2000");
     default_option("-pc_type", "gamg");
-    return symmetric ? "conjugate gradients with smoothed-aggregation multigrid" : "GMRES with smoothed-aggregation multigrid";
+    return symmetric ? "conjugate gradients with smoothed-aggregation multigrid"
+                     : "GMRES with smoothed-aggregation multigrid";
   }
   default_option("-ksp_type", "preonly");
   default_option("-pc_type", symmetric ? "cholesky" : "lu");
@@ -82,7 +89,8 @@ void Newton::set_near_null_space() {
   {
     VecArray values(places);
     for (std::int32_t node = 0; node < mesh.num_owned; ++node)
-      for (int c = 0; c < mesh.dim; ++c) values[node * mesh.dim + c] = mesh.position(node)[c];
+      for (int c = 0; c < mesh.dim; ++c)
+        values[node * mesh.dim + c] = mesh.position(node)[c];
   }
   NullSpaceHandle modes;
   AMT_PETSC(MatNullSpaceCreateRigidBody(places, modes.put()));
@@ -111,10 +119,16 @@ PetscErrorCode Newton::test_convergence(SNES snes, PetscInt iteration, PetscReal
     PetscInt max_iterations = 0;
     AMT_PETSC(SNESGetTolerances(snes, &atol, &rtol, nullptr, &max_iterations, nullptr));
     *reason = SNES_CONVERGED_ITERATING;
-    if (newton.interrupted_ && newton.interrupted_()) *reason = SNES_BREAKOUT_INNER_ITER;
-    else if (!std::isfinite(norm)) *reason = SNES_DIVERGED_FNORM_NAN;
-    else if (norm <= (iteration < newton.least_iterations_ ? rounding : rtol) * newton.problem_.force_scale()) *reason = SNES_CONVERGED_FNORM_RELATIVE;
-    else if (iteration >= max_iterations) *reason = SNES_DIVERGED_MAX_IT;
+    if (newton.interrupted_ && newton.interrupted_())
+      *reason = SNES_BREAKOUT_INNER_ITER;
+    else if (!std::isfinite(norm))
+      *reason = SNES_DIVERGED_FNORM_NAN;
+    else if (iteration < newton.least_iterations_
+                 ? norm <= 1e-15 * newton.problem_.force_scale()
+                 : norm <= std::max(rtol * newton.problem_.force_scale(), newton.problem_.rounding()))
+      *reason = SNES_CONVERGED_FNORM_RELATIVE;
+    else if (iteration >= max_iterations)
+      *reason = SNES_DIVERGED_MAX_IT;
   });
 }
 

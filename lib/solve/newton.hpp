@@ -1,5 +1,6 @@
-// Solves one increment of a Problem by SNES (semismooth Newton: the active set is part of the iteration), with MUMPS or a
-// Krylov method with multigrid underneath. Everything can be tuned by PETSc options: -snes_*, -ksp_*, -pc_*, -mat_mumps_*.
+// Solves one increment of a Problem by SNES (semismooth Newton: the active set is part of the iteration), with MUMPS or
+// a Krylov method with multigrid underneath. Everything can be tuned by PETSc options: -snes_*, -ksp_*, -pc_*,
+// -mat_mumps_*.
 #pragma once
 
 #include "form/problem.hpp"
@@ -12,9 +13,9 @@ namespace amontons {
 /// How a solve went. Not converging is an outcome, not an exception.
 struct SolveOutcome {
   bool converged = false;
-  int newton = 0;      // iterations
-  int linear = 0;      // Krylov iterations (1 a solve with a direct solver)
-  int outer = 0;       // Uzawa iterations, 0 without multipliers to update
+  int newton = 0;         // iterations
+  int linear = 0;         // Krylov iterations (1 a solve with a direct solver)
+  int outer = 0;          // Uzawa iterations, 0 without multipliers to update
   int factorizations = 0; // or preconditioner set-ups
   double residual = 0.0;  // out-of-balance force relative to the force scale
   std::string reason;     // in words
@@ -23,9 +24,9 @@ struct SolveOutcome {
 /// Sets a PETSc option unless the user has set it already.
 void default_option(const std::string& name, const std::string& value);
 
-/// Sets the defaults for a problem: direct (MUMPS, Cholesky where the tangent is symmetric, SCOTCH ordering) or, above a
-/// size where factorization no longer pays and for displacement-only problems, CG with smoothed-aggregation multigrid.
-/// Returns in words what was chosen.
+/// Sets the defaults for a problem: direct (MUMPS, Cholesky where the tangent is symmetric, SCOTCH ordering) or, above
+/// a size where factorization no longer pays and for displacement-only problems, CG with smoothed-aggregation
+/// multigrid. Returns in words what was chosen.
 std::string choose_linear_solver(const Problem& problem);
 
 class Newton {

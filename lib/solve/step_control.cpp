@@ -8,13 +8,15 @@ namespace amontons {
 StepControl::StepControl(const StepPlan& plan, double now, double increment) : plan_(plan), now_(now) {
   const double length = plan.end - plan.begin;
   const int stops = std::max(1, plan.equal_increments);
-  for (int i = 1; i <= stops; ++i) stops_.push_back(i == stops ? plan.end : plan.begin + length * i / stops);
+  for (int i = 1; i <= stops; ++i)
+    stops_.push_back(i == stops ? plan.end : plan.begin + length * i / stops);
   const double scale = plan.equal_increments > 0 ? length / stops : length;
   smallest_ = plan.smallest * scale;
   largest_ = plan.equal_increments > 0 ? scale : plan.largest * length;
   increment_ = plan.equal_increments > 0 ? scale : plan.first * length;
   if (increment > 0.0) increment_ = std::clamp(increment, smallest_, largest_);
-  while (!finished() && stops_[next_stop_] <= now_ + 1e-12 * length) ++next_stop_;
+  while (!finished() && stops_[next_stop_] <= now_ + 1e-12 * length)
+    ++next_stop_;
 }
 
 double StepControl::target() const {

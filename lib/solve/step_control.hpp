@@ -1,5 +1,5 @@
-// Which time comes next: equal or automatic increments, smaller after a failure, larger again when Newton finds it easy.
-// Pure logic, the same on every rank.
+// Which time comes next: equal or automatic increments, smaller after a failure, larger again when Newton finds it
+// easy. Pure logic, the same on every rank.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,17 @@ namespace amontons {
 
 struct StepPlan {
   double begin = 0.0, end = 1.0;
-  int equal_increments = 1;  // 0: automatic
-  double first = 0.1;        // automatic: fractions of the step
-  double smallest = 1e-4;    // below this fraction (for equal increments: of one increment) the run gives up
+  int equal_increments = 1; // 0: automatic
+  double first = 0.1;       // automatic: fractions of the step
+  double smallest = 1e-4;   // below this fraction (for equal increments: of one increment) the run gives up
   double largest = 1.0;
   int target_iterations = 8; // automatic: Newton iterations at which the increment stays as it is
 };
 
 class StepControl {
  public:
-  /// `now`: where in the step to start, begin or the time of a restart; `increment` overrides the first one if positive.
+  /// `now`: where in the step to start, begin or the time of a restart; `increment` overrides the first one if
+  /// positive.
   StepControl(const StepPlan& plan, double now, double increment = 0.0);
 
   bool finished() const { return next_stop_ >= stops_.size(); }

@@ -42,9 +42,12 @@ PetscErrorCode UzawaLoop::test_convergence(SNES snes, PetscInt iteration, PetscR
     PetscInt max_iterations = 0;
     AMT_PETSC(SNESGetTolerances(snes, nullptr, nullptr, nullptr, &max_iterations, nullptr));
     *reason = SNES_CONVERGED_ITERATING;
-    if (!std::isfinite(norm)) *reason = SNES_DIVERGED_FNORM_NAN;
-    else if (norm <= loop.tolerance_ * loop.norm_) *reason = SNES_CONVERGED_FNORM_RELATIVE;
-    else if (iteration >= max_iterations) *reason = SNES_DIVERGED_MAX_IT;
+    if (!std::isfinite(norm))
+      *reason = SNES_DIVERGED_FNORM_NAN;
+    else if (norm <= loop.tolerance_ * loop.norm_)
+      *reason = SNES_CONVERGED_FNORM_RELATIVE;
+    else if (iteration >= max_iterations)
+      *reason = SNES_DIVERGED_MAX_IT;
   });
 }
 

@@ -141,7 +141,10 @@ class Bench:
                 f"{scene} with {changes or 'no changes'} on {ranks or self.ranks} ranks ended with status "
                 f"{done.returncode}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}"
             )
-        return Results(deck, out / "results")
+        results = Results(deck, out / "results")
+        if results.summary["ranks"] != (ranks or self.ranks):
+            raise SystemExit(f"{scene} ran on {results.summary['ranks']} ranks instead of {ranks or self.ranks}")
+        return results
 
     def below(self, name, value, limit):
         """Checks value <= limit (a NaN fails)."""

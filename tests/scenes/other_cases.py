@@ -5,21 +5,27 @@ import common_checks
 import references
 
 
-def flat_punch(bench):
+def check_flat_punch(bench, label, results):
     """Pressure within 3 % away from the edge, rising towards the edge without oscillation."""
-    results = bench.run("flat_punch")
     surface = results.surface["interface"]
     order = np.argsort(surface["places"][:, 0])
     x, pressure = surface["places"][order, 0], surface["pressure"].ravel()[order]
     a = results.deck["mesh"]["parameters"]["a"]
     exact = references.flat_punch_pressure(x[x < 0.8 * a], 2.0 * results.force("interface"), a)
-    bench.below("largest error for x < 0.8 a", np.abs(pressure[x < 0.8 * a] / exact - 1.0).max(), 0.03)
+    bench.below(f"{label}: largest error for x < 0.8 a", np.abs(pressure[x < 0.8 * a] / exact - 1.0).max(), 0.03)
     # The exact pressure rises everywhere: any fall between neighbouring nodes would be an oscillation. The mean over a cell
     # next to the edge is finite, so the last node's value must be of its size: integral of p over (a - h, a) / h.
-    bench.below("largest fall between neighbours / mean pressure", -np.diff(pressure).min() / pressure.mean(), 0.0)
+    bench.below(f"{label}: largest fall between neighbours / mean pressure", -np.diff(pressure).min() / pressure.mean(), 0.0)
     h = x[-1] - x[-2]
     mean = 2.0 * results.force("interface") / np.pi * (np.pi / 2.0 - np.arcsin(1.0 - h / a)) / h
-    bench.below("pressure at the edge / mean pressure of the last cell", pressure[-1] / mean, 2.0)
+    bench.below(f"{label}: pressure at the edge / mean pressure of the last cell", pressure[-1] / mean, 2.0)
+
+
+def flat_punch(bench):
+    """Every formulation by itself: the pressure at the edge is singular, so that differences of peaks mean nothing."""
+    check_flat_punch(bench, "semismooth", bench.run("flat_punch"))
+    for name, enforce in common_checks.OTHERS.items():
+        check_flat_punch(bench, name, bench.run("flat_punch", {"contact.0.enforce": enforce}))
 
 
 def disc_stack(bench):
@@ -28,7 +34,7 @@ def disc_stack(bench):
     parameters = results.deck["mesh"]["parameters"]
     columns, rows = parameters["columns"], parameters["rows"]
     law = results.deck["materials"]["polymer"]["elastic"]
-    lid = 0.4
+    lid = 0.4  # how far the deck moves it
     across = 2.0 * parameters["interference"]
     down = across + lid / rows
     Q, P = references.boxed_disc_forces(across, down, parameters["R"], law["E"], law["nu"])
@@ -40,7 +46,7 @@ def disc_stack(bench):
         difference = abs(results.force(first) - results.force(second)) / results.force(first)
         bench.below(f"{first} against {second}", difference, 1e-6)
     _, p0 = references.line_contact(P, parameters["R"] / 2.0, law["E"] / (2.0 * (1.0 - law["nu"] ** 2)))
-    bench.close("peak pressure at the floor", results.peak_pressure("floor"), p0, 0.05)
+    bench.close("peak pressure at the floor", results.peak_pressure("floor"), p0, 0.03)
 
 
 def rigid_shapes(bench):
@@ -78,7 +84,7 @@ def ranks(scene):
 
 
 CASES = {
-    "flat_punch": {"reference": flat_punch, "formulations": formulations("flat_punch")},
+    "flat_punch": {"reference": flat_punch, "ranks": ranks("flat_punch")},
     "disc_stack": {"reference": disc_stack, "formulations": formulations("disc_stack"), "ranks": ranks("disc_stack")},
     "rigid_shapes": {
         "reference": rigid_shapes,

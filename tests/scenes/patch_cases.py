@@ -1,4 +1,5 @@
 """Contact patch test: the exact stress is uniform in both blocks, whatever the meshes, elements and formulation."""
+import common_checks
 import numpy as np
 
 import references
@@ -73,6 +74,6 @@ def formulations_3d(bench):
 
 
 CASES = {
-    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "projection": projection_2d},
-    "patch_3d": {"elements": elements_3d, "formulations": formulations_3d},
+    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "projection": projection_2d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_2d")},
+    "patch_3d": {"elements": elements_3d, "formulations": formulations_3d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_3d")},
 }

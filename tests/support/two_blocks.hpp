@@ -1,5 +1,5 @@
-// Two unit blocks (squares or cubes) one above the other, meshed by n_lower and n_upper equal quadrilaterals or hexahedra
-// a side, with a gap between them: the smallest scene with a non-matching interface, made without gmsh.
+// Two unit blocks (squares or cubes) one above the other, meshed by n_lower and n_upper equal quadrilaterals or
+// hexahedra a side, with a gap between them: the smallest scene with a non-matching interface, made without gmsh.
 #pragma once
 
 #include "mesh/build.hpp"
@@ -17,8 +17,10 @@ inline void add_block(RawMesh& raw, int n, double floor, std::int32_t body, std:
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i) {
         const double x = double(i) / n, y = double(j) / n, z = double(k) / n;
-        if (d == 2) raw.coordinates.insert(raw.coordinates.end(), {x, floor + y, 0.0});
-        else raw.coordinates.insert(raw.coordinates.end(), {x, y, floor + z});
+        if (d == 2)
+          raw.coordinates.insert(raw.coordinates.end(), {x, floor + y, 0.0});
+        else
+          raw.coordinates.insert(raw.coordinates.end(), {x, y, floor + z});
       }
   const auto node = [&](int i, int j, int k) { return first + (std::int64_t(k) * (n + 1) + j) * (n + 1) + i; };
   const auto sub = [&](std::vector<std::int64_t> nodes, std::int32_t group) {
@@ -30,7 +32,8 @@ inline void add_block(RawMesh& raw, int n, double floor, std::int32_t body, std:
       for (int i = 0; i < n; ++i) {
         raw.cell_types.push_back(d == 2 ? ElementType::Quadrilateral4 : ElementType::Hexahedron8);
         for (int up = 0; up <= (d == 3 ? 1 : 0); ++up)
-          raw.cell_nodes.insert(raw.cell_nodes.end(), {node(i, j, k + up), node(i + 1, j, k + up), node(i + 1, j + 1, k + up), node(i, j + 1, k + up)});
+          raw.cell_nodes.insert(raw.cell_nodes.end(), {node(i, j, k + up), node(i + 1, j, k + up),
+                                                       node(i + 1, j + 1, k + up), node(i, j + 1, k + up)});
         raw.cell_offsets.push_back(static_cast<std::int64_t>(raw.cell_nodes.size()));
         raw.cell_bodies.push_back(body);
         ++raw.groups[body].num_elements;
@@ -56,7 +59,12 @@ inline RawMesh two_blocks(MPI_Comm comm, int dim, int n_lower, int n_upper, doub
   if (rank != 0) return raw;
   raw.dim = dim;
   raw.order = 1;
-  raw.groups = {{"lower", dim, 0}, {"upper", dim, 0}, {"bottom", dim - 1, 0}, {"lower_top", dim - 1, 0}, {"upper_bottom", dim - 1, 0}, {"top", dim - 1, 0}};
+  raw.groups = {{"lower", dim, 0},
+                {"upper", dim, 0},
+                {"bottom", dim - 1, 0},
+                {"lower_top", dim - 1, 0},
+                {"upper_bottom", dim - 1, 0},
+                {"top", dim - 1, 0}};
   add_block(raw, n_lower, 0.0, 0, 2, 3);
   add_block(raw, n_upper, 1.0 + gap, 1, 4, 5);
   return raw;

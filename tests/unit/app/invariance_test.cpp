@@ -1,5 +1,5 @@
-// Two blocks of different stiffness and mesh, one pressed on the other: what must not change the answer does not, and the
-// formulations agree as far as they should.
+// Two blocks of different stiffness and mesh, one pressed on the other: what must not change the answer does not, and
+// the formulations agree as far as they should.
 #include "contact/uzawa_multipliers.hpp"
 #include "form/bulk.hpp"
 #include "form/problem.hpp"
@@ -55,13 +55,17 @@ std::map<std::uint64_t, double> gather_pressure(const Mesh& mesh, const ContactS
   MPI_Comm_size(mesh.comm, &ranks);
   std::vector<int> counts(ranks), offsets(ranks + 1, 0);
   MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, mesh.comm);
-  for (int r = 0; r < ranks; ++r) offsets[r + 1] = offsets[r] + counts[r];
+  for (int r = 0; r < ranks; ++r)
+    offsets[r + 1] = offsets[r] + counts[r];
   std::vector<std::uint64_t> all_keys(offsets[ranks]);
   std::vector<double> all_values(offsets[ranks]);
-  MPI_Allgatherv(keys.data(), mine, MPI_UINT64_T, all_keys.data(), counts.data(), offsets.data(), MPI_UINT64_T, mesh.comm);
-  MPI_Allgatherv(values.data(), mine, MPI_DOUBLE, all_values.data(), counts.data(), offsets.data(), MPI_DOUBLE, mesh.comm);
+  MPI_Allgatherv(keys.data(), mine, MPI_UINT64_T, all_keys.data(), counts.data(), offsets.data(), MPI_UINT64_T,
+                 mesh.comm);
+  MPI_Allgatherv(values.data(), mine, MPI_DOUBLE, all_values.data(), counts.data(), offsets.data(), MPI_DOUBLE,
+                 mesh.comm);
   std::map<std::uint64_t, double> pressure;
-  for (std::size_t i = 0; i < all_keys.size(); ++i) pressure[all_keys[i]] = all_values[i];
+  for (std::size_t i = 0; i < all_keys.size(); ++i)
+    pressure[all_keys[i]] = all_values[i];
   return pressure;
 }
 
@@ -82,14 +86,18 @@ Answer solve(const Variant& variant) {
   const Eigen::Vector3d push = turn * down;
   for (int c = 0; c < variant.dim; ++c) {
     prescribed.push_back({"bottom", c, Expression(0.0)});
-    if (!variant.floating) prescribed.push_back({"top", c, Expression(push[c])});
-    else if (c < variant.dim - 1) prescribed.push_back({"top", c, Expression(0.0)});
+    if (!variant.floating)
+      prescribed.push_back({"top", c, Expression(push[c])});
+    else if (c < variant.dim - 1)
+      prescribed.push_back({"top", c, Expression(0.0)});
   }
   std::vector<NodeField> fields;
   const std::string slave = variant.upper_is_slave ? "upper_bottom" : "lower_top";
-  if (std::holds_alternative<Semismooth>(variant.enforcement)) fields.push_back(multiplier_nodes(mesh, "interface", slave));
+  if (std::holds_alternative<Semismooth>(variant.enforcement))
+    fields.push_back(multiplier_nodes(mesh, "interface", slave));
   const DofLayout layout(mesh, {}, fields);
-  const std::vector<BulkLawPtr> laws = {make_law(Elastic{300.0 * stress, 0.2}, space), make_law(Elastic{100.0 * stress, 0.4}, space)};
+  const std::vector<BulkLawPtr> laws = {make_law(Elastic{300.0 * stress, 0.2}, space),
+                                        make_law(Elastic{100.0 * stress, 0.4}, space)};
 
   std::vector<std::unique_ptr<Form>> forms;
   forms.push_back(std::make_unique<BulkForm>(layout, space, laws));
@@ -111,10 +119,16 @@ Answer solve(const Variant& variant) {
       const DofLayout& layout_;
     };
     forms.push_back(std::make_unique<Push>(layout));
-    forms.push_back(std::make_unique<SupportForm>(layout, find_floating_bodies(mesh, prescribed, false), std::vector<double>{300.0, 100.0}));
+    forms.push_back(std::make_unique<SupportForm>(layout, find_floating_bodies(mesh, prescribed, false),
+                                                  std::vector<double>{300.0, 100.0}));
   }
-  ContactPair pair{.name = "interface", .slave = slave, .master = std::string(variant.upper_is_slave ? "lower_top" : "upper_bottom"),
-                   .enforcement = variant.enforcement, .projection = {}, .space = space, .stiffness = {}};
+  ContactPair pair{.name = "interface",
+                   .slave = slave,
+                   .master = std::string(variant.upper_is_slave ? "lower_top" : "upper_bottom"),
+                   .enforcement = variant.enforcement,
+                   .projection = {},
+                   .space = space,
+                   .stiffness = {}};
   pair.alpha = variant.alpha;
   pair.search_distance = 0.3 * variant.length;
   pair.stiffness = {300.0 * stress, 100.0 * stress};
@@ -147,7 +161,8 @@ Answer solve(const Variant& variant) {
 double difference(const Answer& a, const Answer& b, double scale = 1.0) {
   REQUIRE(a.pressure.size() == b.pressure.size());
   double largest = 0.0;
-  for (const auto& [key, pressure] : a.pressure) largest = std::max(largest, std::abs(pressure - scale * b.pressure.at(key)));
+  for (const auto& [key, pressure] : a.pressure)
+    largest = std::max(largest, std::abs(pressure - scale * b.pressure.at(key)));
   return largest / a.largest;
 }
 

@@ -12,8 +12,13 @@ using namespace amontons::test;
 namespace {
 
 ContactPair declare_pair(const Mesh& mesh, Enforcement enforcement) {
-  ContactPair pair{.name = "interface", .slave = "upper_bottom", .master = std::string("lower_top"), .enforcement = enforcement,
-                   .projection = {}, .space = mesh.dim == 2 ? Space::PlaneStrain : Space::Solid, .stiffness = {}};
+  ContactPair pair{.name = "interface",
+                   .slave = "upper_bottom",
+                   .master = std::string("lower_top"),
+                   .enforcement = enforcement,
+                   .projection = {},
+                   .space = mesh.dim == 2 ? Space::PlaneStrain : Space::Solid,
+                   .stiffness = {}};
   pair.alpha = 3.0;
   pair.search_distance = 0.5;
   pair.stiffness = {100.0, 300.0};
@@ -29,8 +34,10 @@ struct Fixture {
   ContactForm* form = nullptr;
   VecHandle u;
 
-  Fixture(int dim, Enforcement enforcement, ProjectionKind projection = {}) : mesh(two_blocks_mesh(PETSC_COMM_WORLD, dim, 3, 4, 0.01)) {
-    if (std::holds_alternative<Semismooth>(enforcement)) fields.push_back(multiplier_nodes(mesh, "interface", "upper_bottom"));
+  Fixture(int dim, Enforcement enforcement, ProjectionKind projection = {})
+      : mesh(two_blocks_mesh(PETSC_COMM_WORLD, dim, 3, 4, 0.01)) {
+    if (std::holds_alternative<Semismooth>(enforcement))
+      fields.push_back(multiplier_nodes(mesh, "interface", "upper_bottom"));
     layout = std::make_unique<DofLayout>(mesh, std::vector<TiedGroup>{}, fields);
     auto pair = declare_pair(mesh, enforcement);
     pair.projection = projection;
@@ -43,7 +50,8 @@ struct Fixture {
     set(u, 0.0, 1.0);
     if (std::holds_alternative<Uzawa>(enforcement)) {
       std::vector<double> multipliers;
-      for (const auto node : form->nodes().nodes) multipliers.push_back(-0.2 - 0.1 * mesh.position(node)[0]);
+      for (const auto node : form->nodes().nodes)
+        multipliers.push_back(-0.2 - 0.1 * mesh.position(node)[0]);
       form->hold_multipliers(multipliers);
     }
   }
@@ -74,7 +82,8 @@ double norm(Vec vec) {
 
 void check_tangent(Fixture& fixture) {
   const auto direction = fixture.layout->new_vector(), x = fixture.layout->new_vector();
-  const auto plus = fixture.layout->new_vector(), minus = fixture.layout->new_vector(), product = fixture.layout->new_vector();
+  const auto plus = fixture.layout->new_vector(), minus = fixture.layout->new_vector(),
+             product = fixture.layout->new_vector();
   fixture.set(direction, 1.0, 0.0);
   auto matrix = fixture.problem->new_matrix();
   CHECK(fixture.problem->tangent(fixture.u, matrix));
@@ -156,14 +165,16 @@ TEST_CASE("contact forces balance, in sum and in moment, and equal the claimed p
       VecReader f(residual);
       for (std::int32_t node = 0; node < fixture.mesh.num_owned; ++node) {
         const auto x = fixture.mesh.position(node);
-        for (int c = 0; c < dim; ++c) sums[c] += f[node * dim + c];
+        for (int c = 0; c < dim; ++c)
+          sums[c] += f[node * dim + c];
         sums[3] += x[0] * f[node * dim + dim - 1] - x[dim - 1] * f[node * dim];
       }
     }
     MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
     const auto totals = fixture.form->totals(fixture.problem->state_at(fixture.u));
     CHECK(totals.force[dim - 1] > 0.0); // pushes the upper body up
-    for (const double sum : sums) CHECK(std::abs(sum) <= 1e-12 * totals.force[dim - 1]);
+    for (const double sum : sums)
+      CHECK(std::abs(sum) <= 1e-12 * totals.force[dim - 1]);
     // Penalty on the closed part: p = ε (0.05 − 0.01), 0.04 over the facets left of x = 0.5 plus a ramp on the next.
     const double epsilon = 3.0 * 150.0 / 0.25;
     CHECK(totals.max_pressure == doctest::Approx(epsilon * 0.04).epsilon(1e-10));
@@ -189,7 +200,8 @@ TEST_CASE("search finds the same gaps on any number of ranks, and nothing beyond
     auto near = pair;
     near.search_distance = 0.005; // less than the gap: nothing in reach
     const ContactPoints out_of_reach(layout, near);
-    for (const auto& point : out_of_reach.points()) CHECK(point.master == ContactPoint::none);
+    for (const auto& point : out_of_reach.points())
+      CHECK(point.master == ContactPoint::none);
   }
 }
 
@@ -198,9 +210,11 @@ TEST_CASE("rigid masters: plane, sphere and their motion") {
   const DofLayout layout(mesh, {}, {});
   auto pair = declare_pair(mesh, Penalty{});
   pair.slave = "top";
-  pair.master = RigidMaster{RigidPlane{{0.0, 0.0, 2.1}, {0.0, 0.0, -1.0}}, {std::nullopt, std::nullopt, Expression("-0.2*t", {})}};
+  pair.master = RigidMaster{RigidPlane{{0.0, 0.0, 2.1}, {0.0, 0.0, -1.0}},
+                            {std::nullopt, std::nullopt, Expression("-0.2*t", {})}};
   ContactPoints points(layout, pair);
-  for (const auto& point : points.points()) CHECK(point.gap0 == doctest::Approx(0.1));
+  for (const auto& point : points.points())
+    CHECK(point.gap0 == doctest::Approx(0.1));
   points.move_rigid_master(1.0);
   for (const auto& point : points.points()) {
     CHECK(point.gap0 == doctest::Approx(-0.1));

@@ -29,8 +29,8 @@ TEST_CASE("traction is never tensile, its derivative and potential are consisten
   CHECK(in_contact < 700);
 }
 
-// Minimize f(x) = x² + 2x + 1 under x >= 0: x = 0, λ = −2 (V. A. Yastrebov's lecture). The lecture's contact branch λ g + ε g² is
-// ours with twice its ε.
+// Minimize f(x) = x² + 2x + 1 under x >= 0: x = 0, λ = −2 (V. A. Yastrebov's lecture). The lecture's contact branch λ g
+// + ε g² is ours with twice its ε.
 namespace {
 
 constexpr double lecture_epsilon = 10.0;
@@ -44,7 +44,8 @@ double minimizer_at(double lambda, double epsilon) { // of f + potential, contac
 TEST_CASE("lecture example: penalty error is O(1/ε)") {
   for (const double epsilon : {1.0, 10.0, 50.0}) {
     const double x = minimizer_at(0.0, 2.0 * epsilon);
-    CHECK(2.0 * x + 2.0 + normal_traction(augmented_traction(0.0, 2.0 * epsilon, x)) == doctest::Approx(0.0).epsilon(1e-14));
+    CHECK(2.0 * x + 2.0 + normal_traction(augmented_traction(0.0, 2.0 * epsilon, x)) ==
+          doctest::Approx(0.0).epsilon(1e-14));
     CHECK(x == doctest::Approx(-1.0 / (1.0 + epsilon)).epsilon(1e-12));
   }
 }

@@ -26,7 +26,8 @@ TEST_CASE("every equation belongs to exactly one unknown, on any number of ranks
     CHECK(layout.num_extra() == 2 * surface(4));
     std::set<PetscInt> mine;
     for (std::int32_t node = 0; node < mesh.num_owned; ++node) {
-      for (int c = 0; c < dim; ++c) CHECK(mine.insert(layout.equation(node, c)).second);
+      for (int c = 0; c < dim; ++c)
+        CHECK(mine.insert(layout.equation(node, c)).second);
       for (int f = 0; f < 2; ++f)
         if (layout.extra_equation(f, node) >= 0) CHECK(mine.insert(layout.extra_equation(f, node)).second);
     }
@@ -53,7 +54,8 @@ TEST_CASE("ghosts see the owner's displacement and multipliers") {
   {
     VecArray values(u);
     for (std::int32_t node = 0; node < mesh.num_owned; ++node)
-      for (int c = 0; c < 2; ++c) values[layout.equation(node, c) - layout.first_equation()] = mesh.position(node)[c];
+      for (int c = 0; c < 2; ++c)
+        values[layout.equation(node, c) - layout.first_equation()] = mesh.position(node)[c];
   }
   std::vector<double> local(mesh.coordinates.size());
   layout.gather_displacement(u, local);
@@ -65,7 +67,8 @@ TEST_CASE("ghosts see the owner's displacement and multipliers") {
   space.add(ones, counts);
   space.gather(counts, ones);
   double smallest = 1e300;
-  for (const double count : ones[0]) smallest = std::min(smallest, count);
+  for (const double count : ones[0])
+    smallest = std::min(smallest, count);
   MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPI_DOUBLE, MPI_MIN, PETSC_COMM_WORLD);
   CHECK(smallest == 1.0);
   PetscInt size = 0;
@@ -76,7 +79,8 @@ TEST_CASE("ghosts see the owner's displacement and multipliers") {
 TEST_CASE("a tied group shares one equation; its nodes' forces add up there") {
   const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, 3, 2, 3, 0.1);
   const DofLayout layout(mesh, {{"top", 2}}, {});
-  for (const auto node : mesh.node_groups.at("top")) CHECK(layout.equation(node, 2) == layout.tied_equation(0));
+  for (const auto node : mesh.node_groups.at("top"))
+    CHECK(layout.equation(node, 2) == layout.tied_equation(0));
   PetscInt idle = static_cast<PetscInt>(layout.idle_equations().size());
   MPI_Allreduce(MPI_IN_PLACE, &idle, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
   CHECK(idle == 15);
@@ -84,7 +88,8 @@ TEST_CASE("a tied group shares one equation; its nodes' forces add up there") {
   // A unit force at each node, given by its owner alone.
   std::vector<double> forces(mesh.coordinates.size(), 0.0);
   for (std::int32_t node = 0; node < mesh.num_owned; ++node)
-    for (int c = 0; c < 3; ++c) forces[std::size_t(node) * 3 + c] = 1.0;
+    for (int c = 0; c < 3; ++c)
+      forces[std::size_t(node) * 3 + c] = 1.0;
   const auto f = layout.new_vector();
   layout.add_forces(forces, f);
   double sum = 0.0, largest = 0.0;
@@ -99,5 +104,6 @@ TEST_CASE("a tied group shares one equation; its nodes' forces add up there") {
   }
   std::vector<double> back(mesh.coordinates.size());
   layout.gather_displacement(f, back);
-  for (const auto node : mesh.node_groups.at("top")) CHECK(back[std::size_t(node) * 3 + 2] == doctest::Approx(16.0));
+  for (const auto node : mesh.node_groups.at("top"))
+    CHECK(back[std::size_t(node) * 3 + 2] == doctest::Approx(16.0));
 }

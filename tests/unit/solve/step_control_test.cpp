@@ -1,7 +1,7 @@
 #include "solve/step_control.hpp"
 
-#include <doctest/doctest.h>
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <vector>
 
 using namespace amontons;
@@ -37,18 +37,26 @@ TEST_CASE("a cutback halves, lands on the declared times all the same, and growt
 TEST_CASE("persistent failure ends") {
   StepControl control({.begin = 0.0, .end = 1.0, .equal_increments = 1, .smallest = 1e-3}, 0.0);
   int tries = 1;
-  while (control.rejected()) ++tries;
+  while (control.rejected())
+    ++tries;
   CHECK(tries == 10); // 2^-9 is the last one above 1e-3
 }
 
 TEST_CASE("automatic increments grow when Newton is quick and shrink when it is slow") {
-  const StepPlan plan{.begin = 0.0, .end = 10.0, .equal_increments = 0, .first = 0.01, .smallest = 1e-5, .largest = 0.2, .target_iterations = 8};
+  const StepPlan plan{.begin = 0.0,
+                      .end = 10.0,
+                      .equal_increments = 0,
+                      .first = 0.01,
+                      .smallest = 1e-5,
+                      .largest = 0.2,
+                      .target_iterations = 8};
   StepControl quick(plan, 0.0), slow(plan, 0.0);
   quick.accepted(2);
   CHECK(quick.increment() == doctest::Approx(0.2));
   slow.accepted(32);
   CHECK(slow.increment() == doctest::Approx(0.05));
-  for (int i = 0; i < 20; ++i) quick.accepted(1);
+  for (int i = 0; i < 20; ++i)
+    quick.accepted(1);
   CHECK(quick.increment() <= 2.0 + 1e-12);
 }
 
