@@ -154,12 +154,6 @@ void Problem::residual(Vec unknowns, Vec result) {
   force_scale_ = std::max({std::sqrt(largest), norm, unloaded_ratio * largest_accepted_force_});
 }
 
-std::vector<double> Problem::unbalanced_forces() const {
-  std::vector<double> forces(displacement_.size());
-  layout_.gather_displacement(raw_, forces);
-  return forces;
-}
-
 MatHandle Problem::new_matrix() {
   MatHandle matrix;
   AMT_PETSC(MatCreate(comm(), matrix.put()));

@@ -42,12 +42,9 @@ class Problem {
   /// The state at `unknowns` (valid until the next call of any member). Collective.
   State state_at(Vec unknowns);
 
-  /// Out-of-balance forces; zero in the equations of prescribed displacements, where unbalanced_forces() keeps the
-  /// reactions. Collective.
+  /// Out-of-balance forces; zero in the equations of prescribed displacements. Collective.
   void residual(Vec unknowns, Vec result);
-  /// The last residual before prescribed equations were zeroed: reactions of the supports stand there. Ghosted nodal
-  /// values: num_local x dim. For tied groups the sum over the group stands at each of its nodes. Collective.
-  std::vector<double> unbalanced_forces() const;
+  /// The last residual with the reactions of the supports, in the equations of prescribed displacements.
   Vec raw_residual() const { return raw_; }
   /// Norm of the forces that met in the last residual (internal, contact, loads, reactions): what an out-of-balance
   /// force is small against. Not below a thousandth of what it was in any accepted state. Same on every rank.
@@ -67,7 +64,6 @@ class Problem {
   /// Is this equation (owned by this rank) prescribed?
   bool is_prescribed(PetscInt equation) const { return prescribed_flags_[equation - layout_.first_equation()] != 0; }
   const std::vector<PrescribedDisplacement>& prescribed() const { return prescribed_; }
-  const std::vector<std::unique_ptr<Form>>& forms() const { return forms_; }
   double stored_energy(Vec unknowns);
 
  private:

@@ -80,7 +80,9 @@ def main():
         decks = [deck for deck in decks if deck.stem in names]
     if not decks:
         sys.exit("no decks to run")
-    command = [mpirun, "--oversubscribe", "--bind-to", "none", "-n", str(ranks), program]
+    # One rank needs no mpirun, and most of a refusal is waiting: more at a time than there are cores.
+    command = [mpirun, "--oversubscribe", "--bind-to", "none", "-n", str(ranks), program] if ranks > 1 else [program]
+    at_a_time = (os.cpu_count() or 1) * 2 // ranks
     starts = [run_timed([*command, "--version"]) for _ in range(2)]
     if any(done.returncode != 0 for done, _, _ in starts):
         sys.exit("the program does not start:\n" + starts[0][0].stderr)
@@ -88,8 +90,8 @@ def main():
     limit = start + SECONDS_ALLOWED if ranks == 1 else float("inf")
     failed = 0
     slowest = (0.0, 0.0, "")
-    # As many at a time as the machine has cores for; processes, because each counts its children's time.
-    with concurrent.futures.ProcessPoolExecutor(max(1, (os.cpu_count() or 1) // ranks)) as pool:
+    # Processes, because each counts its children's time.
+    with concurrent.futures.ProcessPoolExecutor(at_a_time) as pool:
         results = pool.map(functools.partial(faults_of, command=command, limit=limit), decks)
         for deck, (faults, processor, wall) in zip(decks, results):
             slowest = max(slowest, (processor - start, wall, deck.name))
