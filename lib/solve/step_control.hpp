@@ -22,7 +22,7 @@ class StepControl {
   StepControl(const StepPlan& plan, double now, double increment = 0.0);
 
   bool finished() const { return next_stop_ >= stops_.size(); }
-  /// The end of the increment to try.
+  /// The end of the increment to try; not when finished(), nor accepted() and rejected().
   double target() const;
   /// The increment to target() was solved in this many Newton iterations.
   void accepted(int newton_iterations);
