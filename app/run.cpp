@@ -135,7 +135,7 @@ void Run::open_results() {
   MPI_Comm_size(comm_, &ranks);
   log_.line(formatted("Amontons %s: %s", AMONTONS_VERSION, scene_->deck.title.c_str()));
   log_.line(formatted("  %lld displacement and %lld multiplier unknowns on %d rank%s; %s",
-                      static_cast<long long>(mesh.num_global * mesh.dim),
+                      static_cast<long long>(mesh.num_global) * mesh.dim,
                       static_cast<long long>(scene_->layout->num_extra()), ranks, ranks == 1 ? "" : "s",
                       solver_.c_str()));
   if (!scene_->floating.empty())

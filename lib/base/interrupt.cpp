@@ -17,13 +17,13 @@ InterruptScope::InterruptScope() {
   // SA_RESTART: system calls inside MPI and HDF5 go on; they are not written for EINTR.
   action.sa_flags = SA_RESETHAND | SA_RESTART;
   sigemptyset(&action.sa_mask);
-  for (std::size_t i = 0; i < signals_.size(); ++i)
-    sigaction(signals_[i], &action, &found_[i]);
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    sigaction(signals[i], &action, &found_[i]);
 }
 
 InterruptScope::~InterruptScope() {
-  for (std::size_t i = 0; i < signals_.size(); ++i)
-    sigaction(signals_[i], &found_[i], nullptr);
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    sigaction(signals[i], &found_[i], nullptr);
 }
 
 bool interrupted(MPI_Comm comm) {

@@ -21,8 +21,8 @@ class InterruptScope {
   InterruptScope& operator=(const InterruptScope&) = delete;
 
  private:
-  static constexpr std::array signals_ = {SIGINT, SIGTERM, SIGUSR1};
-  std::array<struct sigaction, signals_.size()> found_{};
+  static constexpr std::array signals = {SIGINT, SIGTERM, SIGUSR1};
+  std::array<struct sigaction, signals.size()> found_{};
 };
 
 /// Has any rank been asked to stop since the InterruptScope began? The same answer on every rank. Collective.
