@@ -397,12 +397,13 @@ TangentialSums TangentialPart::sums() const {
 }
 
 void TangentialPart::sample(ContactSamples& samples) const {
+  samples.has_friction = true;
   for (std::size_t i = 0; i < responses_.size(); ++i) {
     samples.status[i] = status(i);
     const auto& traction = responses_[i].traction; // conjugate to u_slave: what the slave exerts
     samples.shear.push_back({-traction[0], -traction[1], -traction[2]});
     samples.tau_c.push_back(responses_[i].tau_c);
-    samples.slip.push_back(responses_[i].slip);
+    samples.slip.push_back(slip_vector(responses_[i]));
     samples.accumulated_slip.push_back(history_[i].slip + responses_[i].slip);
   }
 }

@@ -20,7 +20,7 @@ constexpr double mu = 0.4;
 /// Pressed until t = 1, then pushed along x (and half of it along y in 3D) with the given number of increments.
 struct Push {
   ContactTotals pressed, little, slid;
-  double bulk_change = 0.0;
+  double shear = 0.0; // ∫ |σ_t| at the end
   int most_iterations = 0;
 
   Push(int dim, const Enforcement& enforcement) {
@@ -54,7 +54,7 @@ struct Push {
     auto* form = contact.get();
     forms.push_back(std::move(contact));
     Problem problem(layout, std::move(forms), prescribed);
-    for (const char* option : {"-pc_type", "-ksp_type"}) // other tests of this program may want symmetric ones
+    for (const char* option : {"-pc_type", "-ksp_type", "-snes_linesearch_type"}) // other tests of this program may want symmetric ones
       PetscOptionsClearValue(nullptr, option);
     choose_linear_solver(problem);
     Newton newton(problem, nullptr);
@@ -71,9 +71,14 @@ struct Push {
       most_iterations = std::max(most_iterations, outcome.newton);
       const auto totals = form->totals(problem.state_at(u));
       (time == 1.0 ? pressed : time == 1.2 ? little : slid) = totals;
+      const auto samples = form->samples(problem.state_at(u));
+      shear = 0.0;
+      for (std::size_t i = 0; i < samples.size(); ++i)
+        shear += std::hypot(samples.shear[i][0], samples.shear[i][1], samples.shear[i][2]) * samples.weight[i];
+      MPI_Allreduce(MPI_IN_PLACE, &shear, 1, MPI_DOUBLE, MPI_SUM, mesh.comm);
       problem.commit(u);
     }
-    for (const char* option : {"-pc_type", "-ksp_type"})
+    for (const char* option : {"-pc_type", "-ksp_type", "-snes_linesearch_type"})
       PetscOptionsClearValue(nullptr, option);
   }
 };
@@ -96,8 +101,10 @@ TEST_CASE("a block pressed and pushed sticks below mu N and slides above with mu
       CHECK(tangential(push.little) < 0.5 * mu * push.little.force[dim - 1]);
       CHECK(push.little.stick_area > 0.3);
       CHECK(push.slid.stick_area == 0.0);
-      CHECK(push.slid.slip_area > 0.9);
-      CHECK(tangential(push.slid) == doctest::Approx(mu * push.slid.force[dim - 1]).epsilon(1e-9));
+      CHECK(push.slid.slip_area > 0.8); // the trailing edge lifts
+      CHECK(push.shear == doctest::Approx(mu * push.slid.force[dim - 1]).epsilon(1e-10));
+      // In 3D the directions differ a little from point to point.
+      CHECK(tangential(push.slid) == doctest::Approx(push.shear).epsilon(dim == 2 ? 1e-10 : 1e-3));
       CHECK(push.slid.tangential_force[0] < 0.0);
       CHECK(push.slid.dissipation > 0.0);
     }
