@@ -59,8 +59,8 @@ std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledge
     for (const char* quantity : {"stick_area", "slip_area", "dissipation"})
       columns.push_back(prefix + quantity);
   }
-  for (const char* quantity :
-       {"energy_stored", "energy_dissipated", "energy_external_work", "newton", "linear", "outer", "residual", "certified"})
+  for (const char* quantity : {"energy_stored", "energy_dissipated", "energy_external_work", "newton", "linear",
+                               "outer", "residual", "certified"})
     columns.emplace_back(quantity);
   return columns;
 }
@@ -77,12 +77,11 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
     const auto& pair = totals[i];
     row.insert(row.end(), pair.force.begin(), pair.force.begin() + d);
     row.insert(row.end(), {pair.area, pair.max_pressure, pair.largest_penetration});
-    if (scene.contacts[i]->tangential())
-      row.insert(row.end(), {pair.stick_area, pair.slip_area, pair.dissipation});
+    if (scene.contacts[i]->tangential()) row.insert(row.end(), {pair.stick_area, pair.slip_area, pair.dissipation});
   }
-  row.insert(row.end(), {ledger.stored_energy(), ledger.dissipated_energy(), ledger.external_work(), double(report.outcome.newton),
-                         double(report.outcome.linear), double(report.outcome.outer), report.outcome.residual,
-                         report.certified ? 1.0 : 0.0});
+  row.insert(row.end(), {ledger.stored_energy(), ledger.dissipated_energy(), ledger.external_work(),
+                         double(report.outcome.newton), double(report.outcome.linear), double(report.outcome.outer),
+                         report.outcome.residual, report.certified ? 1.0 : 0.0});
   return row;
 }
 

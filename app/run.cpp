@@ -100,9 +100,10 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments) : comm_(comm), arguments_
 void Run::restart() {
   for (const auto* contact : scene_->contacts)
     if (contact->tangential())
-      throw UserError("--restart: the contact pair '" + contact->pair().name +
-                      "' has friction, whose history at the points of the surface the checkpoint does not hold. Run the "
-                      "deck from its start.");
+      throw UserError(
+          "--restart: the contact pair '" + contact->pair().name +
+          "' has friction, whose history at the points of the surface the checkpoint does not hold. Run the "
+          "deck from its start.");
   const auto checkpoint = read_checkpoint(scene_->mesh, *arguments_.restart, run_identity(*scene_));
   // By time and not by number: the deck may have got more or longer steps since.
   const auto& steps = scene_->deck.steps;

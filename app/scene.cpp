@@ -107,8 +107,7 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
                             pair.enforcement = Semismooth{static_cast<int>(fields.size())};
                             pair.alpha = semismooth.alpha;
                             fields.push_back(multiplier_nodes(mesh, pair.name, pair.slave));
-                            if (declared.friction)
-                              fields.insert(fields.end(), mesh.dim, NodeField(fields.back()));
+                            if (declared.friction) fields.insert(fields.end(), mesh.dim, NodeField(fields.back()));
                           }},
                declared.enforce);
     if (std::holds_alternative<SlaveNormalDeck>(declared.projection)) pair.projection = SlaveNormal{};

@@ -79,9 +79,9 @@ struct Certificate {
 };
 
 /// friction_cone: shear beyond the limit claimed for the point, shear out of the tangent plane, and shear without
-/// contact, relative to the pair's largest shear. dissipation: negative work of shear on slip, relative to Σ |shear| slip.
-/// Checks everything; the same result on every rank. Throws std::invalid_argument when the input does not fit together.
-/// Collective.
+/// contact, relative to the pair's largest shear. dissipation: negative work of shear on slip, relative to Σ |shear|
+/// slip. Checks everything; the same result on every rank. Throws std::invalid_argument when the input does not fit
+/// together. Collective.
 Certificate certify(const CertificateInput& input);
 
 } // namespace amontons

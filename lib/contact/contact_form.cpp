@@ -317,8 +317,8 @@ ContactBlock ContactForm::block_layout(const Group& group, std::size_t size) con
     block.tangential_multipliers = block.normal_multipliers + num_vertices(points_.slave().types[group.facet]);
   }
   if (coupled(group))
-    block.master =
-        static_cast<std::ptrdiff_t>(size) - static_cast<std::ptrdiff_t>(points_.master()->nodes(group.master).size()) * d;
+    block.master = static_cast<std::ptrdiff_t>(size) -
+                   static_cast<std::ptrdiff_t>(points_.master()->nodes(group.master).size()) * d;
   return block;
 }
 

@@ -67,8 +67,8 @@ class ContactForm : public Form {
   ContactSamples samples(const State& state);
   /// Collective.
   ContactTotals totals(const State& state);
-  /// ∫ σ n·(u_slave − u_master) + σ_t·(u_slave − u_master): the contact tractions' virtual work on the displacement itself, over all ranks (a
-  /// rigid master's motion not included). Collective.
+  /// ∫ σ n·(u_slave − u_master) + σ_t·(u_slave − u_master): the contact tractions' virtual work on the displacement
+  /// itself, over all ranks (a rigid master's motion not included). Collective.
   double work_of_displacement(const State& state);
   /// The rigid master where it is now.
   std::array<double, 3> rigid_shift() const { return points_.rigid_shift(); }

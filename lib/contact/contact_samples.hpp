@@ -24,7 +24,7 @@ struct ContactSamples {
   std::vector<double> pressure;              // -sigma_n >= 0
   std::vector<double> gap;                   // g_n as the solver sees it; 1e300 where nothing is near
   std::vector<ContactStatus> status;         // Slip where in frictionless contact
-  bool has_friction = false; // the same on all ranks, also on those without points
+  bool has_friction = false;                 // the same on all ranks, also on those without points
   // Empty without friction:
   std::vector<std::array<double, 3>> shear; // traction on the slave in the tangent plane
   std::vector<double> tau_c;                // the law's limit of |shear|

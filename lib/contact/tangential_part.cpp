@@ -16,9 +16,9 @@
 // tangent is V^T dσ_t − s² δ_ij N_i / ε with V = δg + (s/ε) Σ N_i δμ_i: symmetric in stick, where D = 1 and c = 0, and
 // unsymmetric in slip.
 //
-// The first tangent of an increment takes all points in contact for sticking (the residual is the true one): at the last
-// accepted state those that slid stand on the border, a first contact has no pressure and hence no friction yet, and a
-// tangent without friction there would send the first iterate far off.
+// The first tangent of an increment takes all points in contact for sticking (the residual is the true one): at the
+// last accepted state those that slid stand on the border, a first contact has no pressure and hence no friction yet,
+// and a tangent without friction there would send the first iterate far off.
 //
 // A point that was open at the last accepted state starts anew: traction zero, law in its initial state. Its Δg_t is
 // that of the whole increment, for when in the increment it closed is not known.
@@ -131,8 +131,9 @@ void TangentialPart::find_factors(double time) {
     for (std::size_t i = 0; i < factor_.size(); ++i) {
       factor_[i] = (*pair_.friction->factor)(time, points_.points()[i].place);
       if (!(factor_[i] >= 0.0))
-        throw UserError("contact: friction_factor of the pair '" + pair_.name + "' is negative or not a number at t = " +
-                        std::to_string(time) + ". Make it an expression that is never below zero.");
+        throw UserError("contact: friction_factor of the pair '" + pair_.name +
+                        "' is negative or not a number at t = " + std::to_string(time) +
+                        ". Make it an expression that is never below zero.");
     }
   });
 }
@@ -166,8 +167,7 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
     const FrictionContext context{
         .dt = std::max(0.0, state.time - accepted_time_), .factor = factor_[i], .new_contact = old.open};
     pressed_[i] = sigma[i] < 0.0;
-    responses_[i] =
-        return_map(pair_.friction->law, context, trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
+    responses_[i] = return_map(pair_.friction->law, context, trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
   }
 }
 
@@ -306,7 +306,8 @@ void TangentialPart::trial_tangent(std::size_t i, const ContactBlock& layout, bo
   if (!is_unknown()) return;
   for (std::size_t a = 0; a < shape.size(); ++a)
     for (int r = 0; r < d; ++r) {
-      if (pressed_[i]) response[r * n + layout.normal_multipliers + a] -= scale_ * shape[a] * derivative.dtraction_dp[r];
+      if (pressed_[i])
+        response[r * n + layout.normal_multipliers + a] -= scale_ * shape[a] * derivative.dtraction_dp[r];
       for (int c = 0; c < d; ++c)
         response[r * n + layout.tangential_multipliers + a * d + c] += scale_ * shape[a] * projected[r][c];
     }

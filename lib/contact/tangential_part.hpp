@@ -43,7 +43,8 @@ class TangentialPart {
 
   /// Forces of points [begin, end), which lie on one slave facet and one master facet.
   void add_residual(std::size_t begin, std::size_t end, Residual& residual) const;
-  /// Their tangent, added to a block; returns whether anything was added. `guess_stick`: that of points which all stick.
+  /// Their tangent, added to a block; returns whether anything was added. `guess_stick`: that of points which all
+  /// stick.
   bool add_tangent(std::size_t begin, std::size_t end, const ContactBlock& layout, bool guess_stick,
                    std::span<double> block) const;
   void gather_multiplier_equations(std::int32_t facet, std::vector<PetscInt>& equations) const;
@@ -98,8 +99,8 @@ class TangentialPart {
   std::vector<double> factor_;
   // At the last evaluation, per point:
   std::vector<FrictionResponse> responses_;
-  std::vector<std::array<double, 3>> jump_;   // u_slave − u_master − rigid shift
-  std::vector<TangentVector> increment_;      // Δg_t
+  std::vector<std::array<double, 3>> jump_; // u_slave − u_master − rigid shift
+  std::vector<TangentVector> increment_;    // Δg_t
   std::vector<std::uint8_t> active_, pressed_, assembled_status_;
   VecHandle local_multipliers_;
   ScatterHandle multiplier_scatter_;

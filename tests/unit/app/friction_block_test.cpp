@@ -54,7 +54,8 @@ struct Push {
     auto* form = contact.get();
     forms.push_back(std::move(contact));
     Problem problem(layout, std::move(forms), prescribed);
-    for (const char* option : {"-pc_type", "-ksp_type", "-snes_linesearch_type"}) // other tests of this program may want symmetric ones
+    for (const char* option :
+         {"-pc_type", "-ksp_type", "-snes_linesearch_type"}) // other tests of this program may want symmetric ones
       PetscOptionsClearValue(nullptr, option);
     choose_linear_solver(problem);
     Newton newton(problem, nullptr);
