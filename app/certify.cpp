@@ -47,6 +47,7 @@ Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<Contac
                   .samples = samples,
                   .external_forces = forces,
                   .energy = {.stored = ledger.stored_energy(),
+                             .dissipated = ledger.dissipated_energy(),
                              .external_work = ledger.external_work(),
                              .work_uncertainty = ledger.work_uncertainty(),
                              .virtual_work_defect = ledger.virtual_work_defect(),

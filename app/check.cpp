@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "validate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <set>
@@ -29,7 +30,8 @@ Unknowns count_unknowns(const Deck& deck, const RawMesh& raw) {
     for (const auto& sub : raw.subs)
       if (raw.groups[sub.group].name == contact.slave.value && raw.groups[sub.group].dim == raw.dim - 1)
         vertices.insert(sub.nodes.begin(), sub.nodes.begin() + num_vertices(sub.type));
-    count.multipliers += double(vertices.size()) * std::exp2((raw.dim - 1) * deck.mesh.refine);
+    const double fields = contact.friction ? 1.0 + raw.dim : 1.0;
+    count.multipliers += fields * double(vertices.size()) * std::exp2((raw.dim - 1) * deck.mesh.refine);
   }
   return count;
 }
@@ -90,7 +92,10 @@ void describe_effects(std::ostream& out, const Deck& deck) {
   std::vector<std::string> on = {"linear elasticity"}, off;
   (deck.contact.empty() ? off : on).push_back("contact");
   (deck.body_force.empty() ? off : on).push_back("body force");
-  for (const auto* name : {"friction", "finite strain", "inertia"})
+  const bool friction =
+      std::any_of(deck.contact.begin(), deck.contact.end(), [](const auto& pair) { return pair.friction.has_value(); });
+  (friction ? on : off).push_back("friction");
+  for (const auto* name : {"finite strain", "inertia"})
     off.push_back(name);
   out << "  on       " << join_names(on) << "\n  off      " << join_names(off) << "\n";
   for (const auto& contact : deck.contact) {
@@ -118,7 +123,7 @@ std::string check_report(MPI_Comm comm, const std::string& deck_path) {
   const auto unknowns = count_unknowns(deck, raw);
   const double factor = factor_bytes(raw.dim, unknowns.total()), matrix = matrix_bytes(raw, unknowns.total());
   out << "\n  unknowns " << std::fixed << std::setprecision(0) << unknowns.total() << " (" << unknowns.displacement
-      << " displacement, " << unknowns.multipliers << " contact pressure)\n"
+      << " displacement, " << unknowns.multipliers << " contact tractions)\n"
       << "  memory   about " << memory_text(factor + matrix)
       << " in all with the direct solver (order of magnitude: factor "
       << (raw.dim == 2 ? "124 bytes x N log2 N" : "220 bytes x N^(4/3)") << ", matrix " << memory_text(matrix)

@@ -162,7 +162,16 @@ ObjectRule<ContactDeck> contact_rule() {
           "search_distance", &ContactDeck::search_distance, number("length", Range::above(0)),
           "How far apart surfaces may be and still be watched. When absent: a tenth of the diagonal of the smaller "
           "surface's bounding box.")
-      .not_yet("friction", "Leave the key out: contact without it is frictionless.");
+      .optional("friction", &ContactDeck::friction, friction_law_rule(),
+                "The law of friction. When absent: no friction, at no cost.")
+      .optional("friction_factor", &ContactDeck::friction_factor, expression("1"),
+                "Multiplies the friction coefficient at each point (in its reference position) and time; >= 0. Not for "
+                "cohesions and shear limits. When absent: 1.")
+      .check([](const DeckNode& node, const ContactDeck& value, Reading& reading) {
+        if (value.friction_factor && !value.friction)
+          reading.fail(node.place, node.path + " has a friction_factor but no friction. Add `friction: {coulomb: {mu: "
+                                               "...}}` or another law, or take the factor out.");
+      });
   return rule;
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/expression.hpp"
 #include "deck/located.hpp"
+#include "friction/friction_law.hpp"
 #include "math/space.hpp"
 
 #include <array>
@@ -92,6 +93,8 @@ struct ContactDeck {
   std::variant<ClosestPointDeck, SlaveNormalDeck> projection;
   std::variant<FacetIntegrationDeck> integration;
   std::optional<double> search_distance; // absent: a tenth of the diagonal of the smaller surface's box
+  std::optional<FrictionLaw> friction;   // absent: frictionless
+  std::optional<Expression> friction_factor;
 };
 
 struct AutoIncrements {

@@ -118,8 +118,13 @@ void Ledger::accept(Vec unknowns) {
   for (std::size_t i = 0; i < scene_.contacts.size(); ++i) {
     auto& contact = *scene_.contacts[i];
     contact_work += contact.work_of_displacement(state);
-    if (!std::holds_alternative<RigidMaster>(contact.pair().master)) continue;
-    const auto force = contact.totals(state).force;
+    const bool is_rigid = std::holds_alternative<RigidMaster>(contact.pair().master);
+    if (!is_rigid && !contact.tangential()) continue;
+    const auto totals = contact.totals(state);
+    dissipated_energy_ += totals.dissipation;
+    here[1] += totals.path_error;
+    if (!is_rigid) continue;
+    const auto& force = totals.force;
     const auto shift = contact.rigid_shift();
     for (int c = 0; c < 3; ++c) {
       const double step = shift[c] - rigid_shift_old_[i][c];
@@ -130,7 +135,7 @@ void Ledger::accept(Vec unknowns) {
     rigid_shift_old_[i] = shift;
   }
   if (initial_overlap_ && !opened_)
-    external_work_ = stored_energy_;
+    external_work_ = stored_energy_ + dissipated_energy_;
   else {
     external_work_ += here[0];
     work_uncertainty_ += here[1];

@@ -27,11 +27,14 @@ class Ledger {
 
   /// ∫ F · du by the trapezoidal rule over the accepted increments: supports, loads and moving rigid masters.
   double external_work() const { return external_work_; }
-  /// Σ ½ |ΔF · Δu|: how far the trapezoidal rule can be off where forces grow monotonically.
+  /// Σ ½ |ΔF · Δu|: how far the trapezoidal rule can be off where forces grow monotonically; with friction plus what
+  /// it can be off at the sliding points (TangentialPart::sums).
   double work_uncertainty() const { return work_uncertainty_; }
   double stored_energy() const { return stored_energy_; }
-  /// e · u − ∫ σ (g − g0) − 2 U at the state: zero for a linear elastic body in equilibrium; and its scale |e · u| + 2
-  /// U.
+  /// Frictional dissipation since the start.
+  double dissipated_energy() const { return dissipated_energy_; }
+  /// e · u − ∫ (σ (g − g0) + σ_t · u) − 2 U at the state: zero for a linear elastic body in equilibrium; and its scale
+  /// |e · u| + 2 U.
   double virtual_work_defect() const { return virtual_work_defect_; }
   double virtual_work_scale() const { return virtual_work_scale_; }
   /// Applied loads and support reactions by node: num_local x dim, this rank's parts. Collective.
@@ -53,7 +56,7 @@ class Ledger {
   Scene& scene_;
   VecHandle external_, external_old_, unknowns_old_, work_;
   std::vector<std::array<double, 3>> rigid_force_old_, rigid_shift_old_;
-  double external_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0;
+  double external_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0, dissipated_energy_ = 0.0;
   double virtual_work_defect_ = 0.0, virtual_work_scale_ = 0.0;
   bool initial_overlap_ = false, opened_ = false;
   std::vector<GroupReaction> reactions_;

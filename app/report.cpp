@@ -25,6 +25,18 @@ bool wants_field(const Scene& scene, const std::string& name) {
   return std::any_of(fields.begin(), fields.end(), [&](const auto& field) { return field.value == name; });
 }
 
+void add_friction_fields(const ContactSamples& sample, PointFields& points) {
+  std::vector<double> shear, slip;
+  for (std::size_t q = 0; q < sample.size(); ++q) {
+    shear.insert(shear.end(), sample.shear[q].begin(), sample.shear[q].end());
+    slip.insert(slip.end(), sample.slip[q].begin(), sample.slip[q].end());
+  }
+  points.fields.push_back({.name = "shear", .components = 3, .values = std::move(shear)});
+  points.fields.push_back({.name = "slip", .components = 3, .values = std::move(slip)});
+  points.fields.push_back({.name = "accumulated_slip", .values = sample.accumulated_slip});
+  points.fields.push_back({.name = "tau_c", .values = sample.tau_c});
+}
+
 std::string multiplier_name(const ContactForm& contact) { return "multiplier:" + contact.pair().name; }
 
 } // namespace
@@ -43,9 +55,12 @@ std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledge
       columns.push_back(prefix + "force_" + axes[c]);
     for (const char* quantity : {"area", "max_pressure", "penetration"})
       columns.push_back(prefix + quantity);
+    if (!contact->tangential()) continue;
+    for (const char* quantity : {"stick_area", "slip_area", "dissipation"})
+      columns.push_back(prefix + quantity);
   }
-  for (const char* quantity :
-       {"energy_stored", "energy_external_work", "newton", "linear", "outer", "residual", "certified"})
+  for (const char* quantity : {"energy_stored", "energy_dissipated", "energy_external_work", "newton", "linear",
+                               "outer", "residual", "certified"})
     columns.emplace_back(quantity);
   return columns;
 }
@@ -58,13 +73,15 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
     row.insert(row.end(), reaction.force.begin(), reaction.force.begin() + d);
   for (std::size_t i = 0; i < scene.layout->tied().size(); ++i)
     row.push_back(ledger.tied_displacements()[i]);
-  for (const auto& pair : totals) {
+  for (std::size_t i = 0; i < totals.size(); ++i) {
+    const auto& pair = totals[i];
     row.insert(row.end(), pair.force.begin(), pair.force.begin() + d);
     row.insert(row.end(), {pair.area, pair.max_pressure, pair.largest_penetration});
+    if (scene.contacts[i]->tangential()) row.insert(row.end(), {pair.stick_area, pair.slip_area, pair.dissipation});
   }
-  row.insert(row.end(), {ledger.stored_energy(), ledger.external_work(), double(report.outcome.newton),
-                         double(report.outcome.linear), double(report.outcome.outer), report.outcome.residual,
-                         report.certified ? 1.0 : 0.0});
+  row.insert(row.end(), {ledger.stored_energy(), ledger.dissipated_energy(), ledger.external_work(),
+                         double(report.outcome.newton), double(report.outcome.linear), double(report.outcome.outer),
+                         report.outcome.residual, report.certified ? 1.0 : 0.0});
   return row;
 }
 
@@ -110,6 +127,7 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
                        {.name = "status", .values = std::move(status)},
                        {.name = "weight", .values = sample.weight},
                        {.name = "normal", .components = 3, .values = std::move(normals)}};
+      if (sample.has_friction) add_friction_fields(sample, points);
       step.points.push_back(std::move(points));
     }
   writer.write(step);
@@ -212,7 +230,8 @@ nlohmann::ordered_json describe_scene(const Scene& scene) {
   }
   nlohmann::ordered_json effects;
   effects["contact"] = !scene.contacts.empty();
-  effects["friction"] = false;
+  effects["friction"] = std::any_of(scene.contacts.begin(), scene.contacts.end(),
+                                    [](const auto* contact) { return contact->tangential() != nullptr; });
   effects["finite_kinematics"] = false;
   effects["inertia"] = false;
   effects["unknown_multipliers"] = scene.layout->num_extra() > 0;

@@ -98,6 +98,12 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments) : comm_(comm), arguments_
 }
 
 void Run::restart() {
+  for (const auto* contact : scene_->contacts)
+    if (contact->tangential())
+      throw UserError(
+          "--restart: the contact pair '" + contact->pair().name +
+          "' has friction, whose history at the points of the surface the checkpoint does not hold. Run the "
+          "deck from its start.");
   const auto checkpoint = read_checkpoint(scene_->mesh, *arguments_.restart, run_identity(*scene_));
   // By time and not by number: the deck may have got more or longer steps since.
   const auto& steps = scene_->deck.steps;
@@ -298,6 +304,7 @@ int Run::finish(int status, const std::string& reason) {
                                                  {"largest_penetration", last_totals_[i].largest_penetration}};
   summary["contact"] = results;
   summary["energy"] = {{"stored", ledger_->stored_energy()},
+                       {"dissipated", ledger_->dissipated_energy()},
                        {"external_work", ledger_->external_work()},
                        {"external_work_uncertainty", ledger_->work_uncertainty()}};
   summary["certificate"] = certificate_.to_json();

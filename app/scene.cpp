@@ -107,9 +107,15 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
                             pair.enforcement = Semismooth{static_cast<int>(fields.size())};
                             pair.alpha = semismooth.alpha;
                             fields.push_back(multiplier_nodes(mesh, pair.name, pair.slave));
+                            if (declared.friction) fields.insert(fields.end(), mesh.dim, NodeField(fields.back()));
                           }},
                declared.enforce);
     if (std::holds_alternative<SlaveNormalDeck>(declared.projection)) pair.projection = SlaveNormal{};
+    if (declared.friction) {
+      const auto* unknown = std::get_if<Semismooth>(&pair.enforcement);
+      pair.friction = Friction{
+          .law = *declared.friction, .factor = declared.friction_factor, .field = unknown ? unknown->field + 1 : -1};
+    }
     pair.integration_degree = std::get<FacetIntegrationDeck>(declared.integration).order;
     pair.holds_floating_body = on_flagged_body(mesh, pair.slave, floating);
     pair.search_distance = declared.search_distance.value_or(0.1 * surface_diagonal(mesh, pair.slave));

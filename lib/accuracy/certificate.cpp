@@ -40,7 +40,7 @@ Certificate::Item virtual_work_item(const CertificateInput& input) {
 
 Certificate::Item energy_item(const CertificateInput& input) {
   const EnergyLedger& energy = input.energy;
-  const double excess = std::abs(energy.external_work - energy.stored) - energy.work_uncertainty;
+  const double excess = std::abs(energy.external_work - energy.stored - energy.dissipated) - energy.work_uncertainty;
   const double scale = std::max({std::abs(energy.external_work), std::abs(energy.stored), input.energy_floor});
   // Not std::max, which would drop an excess that is not a number.
   return at_most("energy", {excess <= 0.0 ? 0.0 : relative(excess, scale), ""}, input.tolerances.energy);
@@ -62,6 +62,8 @@ Certificate without_numbers(const CertificateTolerances& limits) {
   fail("energy", limits.energy);
   fail("volume_ratio", limits.volume_ratio);
   fail("missed_contact", limits.penetration);
+  fail("friction_cone", limits.friction);
+  fail("dissipation", limits.friction);
   return certificate;
 }
 
@@ -99,6 +101,7 @@ Certificate certify(const CertificateInput& input) {
   const accuracy::BalanceChecks balance = accuracy::check_balance(input, pivot, scene.diagonal(), forces);
   const Worst volume = accuracy::check_volume(input);
   const Worst overlap = accuracy::check_overlap(input);
+  const accuracy::FrictionChecks friction = accuracy::check_friction(input);
 
   const CertificateTolerances& limits = input.tolerances;
   Certificate certificate;
@@ -112,7 +115,9 @@ Certificate certify(const CertificateInput& input) {
       virtual_work_item(input),
       energy_item(input),
       {"volume_ratio", -volume.value, limits.volume_ratio, -volume.value > limits.volume_ratio, volume.where},
-      at_most("missed_contact", overlap, limits.penetration)};
+      at_most("missed_contact", overlap, limits.penetration),
+      at_most("friction_cone", friction.cone, limits.friction),
+      at_most("dissipation", friction.dissipation, limits.friction)};
   return certificate;
 }
 

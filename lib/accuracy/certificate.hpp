@@ -21,17 +21,24 @@ struct CertificateTolerances {
   double balance = 1e-6;         // force and moment out of balance / force scale
   double energy = 1e-6;          // violation of the energy bounds / energy scale
   double volume_ratio = 0.0;     // smallest det(I + ∇u) / reference volume
+  double friction = 1e-6;        // shear beyond the law's limit, and negative frictional work, relative (see certify)
 };
 
 /// Energies over all ranks, the same on every rank. All cumulative since the start of the run.
 struct EnergyLedger {
   /// Σ potential of all forms: strain energy of the bodies and the potential (σ² − λ²) / (2 ε) of the contact.
   double stored = 0.0;
+  /// Frictional dissipation: Σ over increments of ∫ shear traction · slip.
+  double dissipated = 0.0;
   /// Σ ½ (f_old + f) · Δu over supports, loads and moving rigid masters.
   double external_work = 0.0;
   /// Σ ½ |Δf · Δu|, over the same. Frictionless contact of linear elastic bodies has a convex potential, so in every
   /// increment
   ///   f_old · Δu <= Δ stored <= f · Δu   and   |external_work − stored| <= work_uncertainty.
+  /// Friction has no potential. There, external_work = stored + dissipated up to work_uncertainty, in which each slave
+  /// point then counts |½ (t_old + t) · Δg − t · slip − Δ spring energy| + ½ |Δt · Δg|, t its shear traction and Δg its
+  /// tangential motion in the increment: the first is the error of the trapezoidal rule there, the second the part of
+  /// ½ Δf · Δu that friction may take away from the monotone rest.
   double work_uncertainty = 0.0;
   /// f · u + Σ over slave points of pressure · n · (u_slave − u_master) − 2 · (strain energy), now: zero for linear
   /// elastic bodies in equilibrium. And the sum of the absolute values of the terms.
@@ -66,13 +73,15 @@ struct Certificate {
     std::string where; // the worst place, in words; may be empty
   };
   /// penetration, tension, complementarity, force_balance, moment_balance, body_balance, virtual_work, energy,
-  /// volume_ratio, missed_contact: always all of them, in this order.
+  /// volume_ratio, missed_contact, friction_cone, dissipation: always all of them, in this order.
   std::vector<Item> items;
   bool passed() const;
 };
 
-/// Checks everything; the same result on every rank. Throws std::invalid_argument when the input does not fit together.
-/// Collective.
+/// friction_cone: shear beyond the limit claimed for the point, shear out of the tangent plane, and shear without
+/// contact, relative to the pair's largest shear. dissipation: negative work of shear on slip, relative to Σ |shear|
+/// slip. Checks everything; the same result on every rank. Throws std::invalid_argument when the input does not fit
+/// together. Collective.
 Certificate certify(const CertificateInput& input);
 
 } // namespace amontons

@@ -17,7 +17,7 @@ struct GapChecks {
 struct ClaimedForces {
   std::vector<std::array<double, 6>> on_body;
   std::array<double, 6> by_rigid{}; // sum over the pairs with a rigid master: an outer force
-  double absolute = 0.0;            // Σ |p| w
+  double absolute = 0.0;            // Σ |traction| w
 };
 
 /// Searches every pair afresh; fills in the forces. Collective.
@@ -41,6 +41,13 @@ Worst check_volume(const CertificateInput& input);
 /// Deepest node of a body inside another body or a rigid shape in the current configuration, relative to the facet
 /// size. Collective.
 Worst check_overlap(const CertificateInput& input);
+
+/// What the frictional pairs claim; zero without friction (see certify).
+struct FrictionChecks {
+  Worst cone, dissipation;
+};
+/// Collective.
+FrictionChecks check_friction(const CertificateInput& input);
 
 /// Adds f and (x − pivot) × f.
 void add_wrench(std::array<double, 6>& sum, const std::array<double, 3>& x, const std::array<double, 3>& pivot,

@@ -80,12 +80,13 @@ double gap_under_pressure(const MasterHit& hit, double size) {
 void add_forces(const ContactSamples& samples, const FacetSet& slave, std::span<const MasterHit> hits, bool is_rigid,
                 const std::array<double, 3>& pivot, ClaimedForces& forces) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::array<double, 3> traction = samples.traction(i);
     std::array<double, 3> on_slave{}, on_master{};
     for (std::size_t c = 0; c < 3; ++c) {
-      on_slave[c] = samples.pressure[i] * samples.weight[i] * samples.normal[i][c];
+      on_slave[c] = samples.weight[i] * traction[c];
       on_master[c] = -on_slave[c];
     }
-    forces.absolute += std::abs(samples.pressure[i]) * samples.weight[i];
+    forces.absolute += std::hypot(traction[0], traction[1], traction[2]) * samples.weight[i];
     add_wrench(forces.on_body[slave.bodies[samples.facet[i]]], samples.place[i], pivot, on_slave);
     // The force on the master acts on the same line: its moment may be taken at the slave's point.
     if (is_rigid)

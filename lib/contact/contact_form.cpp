@@ -84,6 +84,8 @@ ContactForm::ContactForm(const DofLayout& layout, ContactPair pair)
     const auto global = layout.new_vector();
     AMT_PETSC(VecScatterCreate(global, from, local_multipliers_, nullptr, multiplier_scatter_.put()));
   }
+  if (pair_.friction)
+    tangential_ = std::make_unique<TangentialPart>(layout_, pair_, points_, nodes_, position_, scale_);
 }
 
 std::vector<ContactForm::Group> ContactForm::groups() const {
@@ -156,6 +158,14 @@ void ContactForm::evaluate(const State& state) {
     touches = touches || active_[i];
   }
   if (state.first_guess && !any_of_all(layout_.mesh().comm, touches)) guess_contact();
+  if (tangential_) evaluate_friction(state);
+}
+
+void ContactForm::evaluate_friction(const State& state) {
+  normal_traction_.resize(active_.size());
+  for (std::size_t i = 0; i < active_.size(); ++i)
+    normal_traction_[i] = sigma(i);
+  tangential_->evaluate(state, normal_traction_, active_);
 }
 
 /// Nothing touches: take the points where the surfaces are nearest for closed, for one residual and one tangent, when
@@ -186,7 +196,8 @@ void ContactForm::couple_near() {
     if (active_[i] || (points[i].master >= 0 && gap_[i] < coupling_reach * points[i].size)) coupled_[i] = 1;
 }
 
-/// Slave displacements, then unknown multipliers, then master displacements where the group is coupled.
+/// Slave displacements, then unknown multipliers (normal, then tangential), then master displacements where the group
+/// is coupled.
 void ContactForm::gather_equations(const Group& group, std::vector<PetscInt>& equations) const {
   const int d = layout_.dim();
   equations.clear();
@@ -199,6 +210,7 @@ void ContactForm::gather_equations(const Group& group, std::vector<PetscInt>& eq
     for (int a = 0; a < num_vertices(points_.slave().types[group.facet]); ++a)
       equations.push_back(layout_.extra_equation(field, nodes[a]));
   }
+  if (tangential_) tangential_->gather_multiplier_equations(group.facet, equations);
   if (coupled(group))
     for (const auto node : points_.master()->nodes(group.master)) {
       const auto of_node = points_.master()->equations(node);
@@ -225,7 +237,7 @@ bool ContactForm::coupling_changed(const State& state) {
 
 bool ContactForm::tangent_changed(const State& state) {
   evaluate(state);
-  return !assembled_ || active_ != assembled_active_;
+  return !assembled_ || active_ != assembled_active_ || (tangential_ && tangential_->tangent_changed());
 }
 
 // --- assembly
@@ -278,6 +290,7 @@ void ContactForm::add_residual(const State& state, Residual& residual) {
       }
       residual.add(equations, values);
     }
+    if (tangential_) tangential_->add_residual(group.begin, group.end, residual);
     if (!is_unknown()) continue;
     const int field = std::get<Semismooth>(pair_.enforcement).field;
     const int vertices = num_vertices(points_.slave().types[group.facet]);
@@ -295,10 +308,25 @@ void ContactForm::add_residual(const State& state, Residual& residual) {
   }
 }
 
+/// Where the parts of gather_equations stand.
+ContactBlock ContactForm::block_layout(const Group& group, std::size_t size) const {
+  const int d = layout_.dim();
+  ContactBlock block{.size = size, .normal_multipliers = -1, .tangential_multipliers = -1, .master = -1};
+  if (is_unknown()) {
+    block.normal_multipliers = static_cast<std::ptrdiff_t>(points_.slave().facet(group.facet).size()) * d;
+    block.tangential_multipliers = block.normal_multipliers + num_vertices(points_.slave().types[group.facet]);
+  }
+  if (coupled(group))
+    block.master = static_cast<std::ptrdiff_t>(size) -
+                   static_cast<std::ptrdiff_t>(points_.master()->nodes(group.master).size()) * d;
+  return block;
+}
+
 void ContactForm::add_tangent(const State& state, Tangent& tangent) {
   evaluate(state);
   assembled_active_ = active_;
   assembled_ = true;
+  if (tangential_) tangential_->remember_tangent(state.first_guess);
   const auto& points = points_.points();
   std::vector<PetscInt> equations;
   std::vector<double> block, variation;
@@ -337,6 +365,8 @@ void ContactForm::add_tangent(const State& state, Tangent& tangent) {
         }
       }
     }
+    if (tangential_)
+      any = tangential_->add_tangent(group.begin, group.end, block_layout(group, n), state.first_guess, block) || any;
     if (any) tangent.add(equations, block);
   }
 }
@@ -346,10 +376,12 @@ void ContactForm::add_tangent(const State& state, Tangent& tangent) {
 void ContactForm::commit(const State& state) {
   evaluate(state);
   multipliers_old_ = multipliers_;
+  if (tangential_) tangential_->commit(state);
 }
 
 void ContactForm::roll_back() {
   multipliers_ = multipliers_old_;
+  if (tangential_) tangential_->roll_back();
   assembled_ = false;
 }
 
@@ -384,6 +416,7 @@ double ContactForm::stored_energy(const State& state) {
       square += shape[a] * std::pow(multipliers_[position_[nodes[a]]], 2);
     energy += points[i].weight * contact_potential(augmented_[i], square, points[i].epsilon);
   }
+  if (tangential_) energy += tangential_->stored_energy();
   return energy;
 }
 
@@ -393,6 +426,7 @@ double ContactForm::work_of_displacement(const State& state) {
   const auto& points = points_.points();
   for (std::size_t i = 0; i < points.size(); ++i)
     if (active_[i]) work += points[i].weight * sigma(i) * (gap_[i] - points[i].gap0);
+  if (tangential_) work += tangential_->sums().work;
   MPI_Allreduce(MPI_IN_PLACE, &work, 1, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
   return work;
 }
@@ -444,6 +478,7 @@ ContactSamples ContactForm::samples(const State& state) {
     samples.gap.push_back(gap_[i]);
     samples.status.push_back(active_[i] ? ContactStatus::Slip : ContactStatus::Open);
   }
+  if (tangential_) tangential_->sample(samples);
   samples.nodes = nodes_.nodes;
   samples.nodal_pressure = nodal_pressure();
   return samples;
@@ -452,7 +487,7 @@ ContactSamples ContactForm::samples(const State& state) {
 ContactTotals ContactForm::totals(const State& state) {
   evaluate(state);
   ContactTotals totals;
-  double sums[7] = {}; // force, moment, area
+  double sums[14] = {}; // force, moment, area, tangential force, stick and slip area, dissipation, path error
   double largest[2] = {};
   const auto& points = points_.points();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -460,7 +495,13 @@ ContactTotals ContactForm::totals(const State& state) {
     const auto& point = points[i];
     double force[3];
     for (int c = 0; c < 3; ++c)
-      sums[c] += force[c] = -sigma(i) * point.weight * point.normal[c];
+      force[c] = -sigma(i) * point.weight * point.normal[c];
+    for (int c = 0; tangential_ && c < 3; ++c) {
+      sums[7 + c] -= tangential_->traction(i)[c] * point.weight;
+      force[c] -= tangential_->traction(i)[c] * point.weight;
+    }
+    for (int c = 0; c < 3; ++c)
+      sums[c] += force[c];
     for (int c = 0; c < 3; ++c)
       sums[3 + c] += point.place[(c + 1) % 3] * force[(c + 2) % 3] - point.place[(c + 2) % 3] * force[(c + 1) % 3];
     sums[6] += point.weight;
@@ -468,13 +509,25 @@ ContactTotals ContactForm::totals(const State& state) {
   }
   for (const double pressure : nodal_pressure())
     largest[0] = std::max(largest[0], pressure);
-  MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
+  if (tangential_) {
+    const auto friction = tangential_->sums();
+    sums[10] = friction.stick_area;
+    sums[11] = friction.slip_area;
+    sums[12] = friction.dissipation;
+    sums[13] = friction.path_error;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, tangential_ ? 14 : 7, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
   MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, layout_.mesh().comm);
   for (int c = 0; c < 3; ++c) {
     totals.force[c] = sums[c];
     totals.moment[c] = sums[3 + c];
+    totals.tangential_force[c] = sums[7 + c];
   }
   totals.area = sums[6];
+  totals.stick_area = sums[10];
+  totals.slip_area = sums[11];
+  totals.dissipation = sums[12];
+  totals.path_error = sums[13];
   totals.max_pressure = largest[0];
   totals.largest_penetration = largest[1];
   return totals;

@@ -5,6 +5,7 @@
 #include "contact/contact_pair.hpp"
 #include "contact/contact_points.hpp"
 #include "contact/contact_samples.hpp"
+#include "contact/tangential_part.hpp"
 #include "form/form.hpp"
 
 #include <memory>
@@ -24,6 +25,11 @@ struct ContactTotals {
   double area = 0.0;                // of slave points in contact, weighted
   double max_pressure = 0.0;        // nodal
   double largest_penetration = 0.0; // −g over the points in contact, relative to the facet size
+  // Zero without friction:
+  std::array<double, 3> tangential_force{}; // on the slave; part of `force`
+  double stick_area = 0.0, slip_area = 0.0;
+  double dissipation = 0.0; // in the increment since the last accepted state
+  double path_error = 0.0;  // of the shear's energy in that increment (TangentialPart::sums)
 };
 
 class ContactForm : public Form {
@@ -40,6 +46,7 @@ class ContactForm : public Form {
   void commit(const State& state) override;
   void roll_back() override;
   double stored_energy(const State& state) override;
+  bool tangent_is_symmetric() const override { return !tangential_; }
 
   const ContactPair& pair() const { return pair_; }
   const NodeField& nodes() const { return nodes_; }
@@ -52,12 +59,16 @@ class ContactForm : public Form {
   /// This rank's parts of ∫ N_i (σ − λ_i) and ∫ N_i at nodes(). Collective.
   void multiplier_defect(const State& state, std::vector<double>& defect, std::vector<double>& mass);
 
+  /// Absent without friction.
+  const TangentialPart* tangential() const { return tangential_.get(); }
+  TangentialPart* tangential() { return tangential_.get(); }
+
   /// What the solver claims, point by point, with the nodal pressure summed over ranks. Collective.
   ContactSamples samples(const State& state);
   /// Collective.
   ContactTotals totals(const State& state);
-  /// ∫ σ n·(u_slave − u_master): the contact tractions' virtual work on the displacement itself, over all ranks (a
-  /// rigid master's motion not included). Collective.
+  /// ∫ σ n·(u_slave − u_master) + σ_t·(u_slave − u_master): the contact tractions' virtual work on the displacement
+  /// itself, over all ranks (a rigid master's motion not included). Collective.
   double work_of_displacement(const State& state);
   /// The rigid master where it is now.
   std::array<double, 3> rigid_shift() const { return points_.rigid_shift(); }
@@ -69,10 +80,12 @@ class ContactForm : public Form {
   void evaluate(const State& state);
   void fetch_multipliers(const State& state);
   void guess_contact();
+  void evaluate_friction(const State& state);
   double gap_at(const ContactPoint& point, const State& state) const;
   double multiplier_at(const ContactPoint& point) const;
   double sigma(std::size_t i) const { return active_[i] ? augmented_[i] : 0.0; }
   void gather_equations(const Group& group, std::vector<PetscInt>& equations) const;
+  ContactBlock block_layout(const Group& group, std::size_t size) const;
   void gap_variation(const ContactPoint& point, const Group& group, std::span<double> variation) const;
   bool coupled(const Group& group) const;
   void couple_near();
@@ -91,6 +104,8 @@ class ContactForm : public Form {
   std::vector<double> gap_, lambda_, augmented_;
   std::vector<std::uint8_t> active_, assembled_active_, coupled_;
   bool assembled_ = false;
+  std::unique_ptr<TangentialPart> tangential_;
+  std::vector<double> normal_traction_; // for it
   VecHandle local_multipliers_;
   ScatterHandle multiplier_scatter_;
 };

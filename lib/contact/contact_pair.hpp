@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/expression.hpp"
+#include "friction/friction_law.hpp"
 #include "geometry/rigid_shape.hpp"
 #include "math/space.hpp"
 
@@ -33,6 +34,13 @@ struct Semismooth {
 };
 using Enforcement = std::variant<Penalty, Uzawa, Semismooth>;
 
+/// Friction of a pair. Unknown tangential multipliers (`semismooth`) are the dim extra fields from `field` on.
+struct Friction {
+  FrictionLaw law;
+  std::optional<Expression> factor; // of the friction coefficient, in place and time
+  int field = -1;
+};
+
 struct ContactPair {
   std::string name;
   std::string slave; // surface group of the mesh
@@ -47,6 +55,7 @@ struct ContactPair {
   /// touches yet.
   bool holds_floating_body = false;
   std::vector<double> stiffness; // Young's modulus per body of the mesh
+  std::optional<Friction> friction = std::nullopt;
 };
 
 } // namespace amontons

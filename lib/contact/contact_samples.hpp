@@ -24,11 +24,24 @@ struct ContactSamples {
   std::vector<double> pressure;              // -sigma_n >= 0
   std::vector<double> gap;                   // g_n as the solver sees it; 1e300 where nothing is near
   std::vector<ContactStatus> status;         // Slip where in frictionless contact
+  bool has_friction = false;                 // the same on all ranks, also on those without points
+  // Empty without friction:
+  std::vector<std::array<double, 3>> shear; // traction on the slave in the tangent plane
+  std::vector<double> tau_c;                // the law's limit of |shear|
+  std::vector<std::array<double, 3>> slip;  // of the slave over the master in this increment
+  std::vector<double> accumulated_slip;
   /// Nodal pressure on the slave surface at the local mesh nodes `nodes` (owned vertices): multipliers, or for penalty
   /// the projected pressure.
   std::vector<std::int32_t> nodes;
   std::vector<double> nodal_pressure;
   std::size_t size() const { return facet.size(); }
+  /// Traction on the slave.
+  std::array<double, 3> traction(std::size_t i) const {
+    std::array<double, 3> all{};
+    for (std::size_t c = 0; c < 3; ++c)
+      all[c] = pressure[i] * normal[i][c] + (has_friction ? shear[i][c] : 0.0);
+    return all;
+  }
 };
 
 /// A rigid master at a moment: the shape and where it has moved.

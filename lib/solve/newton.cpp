@@ -54,7 +54,9 @@ std::string choose_linear_solver(const Problem& problem) {
   const bool symmetric = problem.tangent_is_symmetric();
   default_option("-snes_rtol", "1e-10");
   default_option("-snes_max_it", "50");
-  default_option("-snes_linesearch_type", "basic");
+  // Full steps end in finitely many iterations where status is all that changes. With friction (unsymmetric) they may
+  // go round in circles: backtracking stops that.
+  default_option("-snes_linesearch_type", symmetric ? "basic" : "bt");
   if (displacement_only && size > (layout.dim() == 2 ? multigrid_from_2d : multigrid_from_3d)) {
     default_option("-ksp_type", symmetric ? "cg" : "gmres");
     default_option("-ksp_rtol", "1e-8");

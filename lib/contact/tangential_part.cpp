@@ -1,0 +1,412 @@
+// Small kinematics: projections are fixed in the reference configuration, so a point slides over a fixed place of the
+// master and the increment of tangential motion since the last accepted state is
+//   Δg_t = P Δ(u_slave − u_master − rigid shift),  P = 1 − n ⊗ n,
+// convective and frame-indifferent to first order as the whole of small kinematics is. The shear traction follows from
+//   q = P λ_t + ε Δg_t,  σ_t = return_map(q, p = −σ_n),  virtual work ∫ σ_t · δg_t,
+// with the ε of the normal part. λ_t is the last accepted traction of the point (penalty), or Σ N_i λ_i with nodal
+// vectors held (Uzawa) or unknown (semismooth).
+//
+// Nodal λ_i have dim Cartesian components: no tangent basis has to be chosen at nodes, where the surface has no normal,
+// or agreed upon between ranks. As for the normal part they are the lumped projection of the traction,
+//   λ_i ∫ N_i = ∫ N_i σ_t,
+// which determines all components: that along n is zero on a flat surface and of the order of the facets' angle on a
+// curved one, where P removes it at the points. Unknown λ = s μ are scaled like the normal ones; residual rows are
+//   δu:  ∫ σ_t · δg_t,    δμ_i:  s ∫ N_i (σ_t − λ_i) / ε.
+// With dσ_t = D P (ε dg + s Σ N_i dμ_i) + c dp,  D = ∂σ_t/∂q, c = ∂σ_t/∂p, and dp = −(ε n · dg + s Σ N_i dμ^n_i), the
+// tangent is V^T dσ_t − s² δ_ij N_i / ε with V = δg + (s/ε) Σ N_i δμ_i: symmetric in stick, where D = 1 and c = 0, and
+// unsymmetric in slip.
+//
+// The first tangent of an increment takes all points in contact for sticking (the residual is the true one): at the
+// last accepted state those that slid stand on the border, a first contact has no pressure and hence no friction yet,
+// and a tangent without friction there would send the first iterate far off.
+//
+// A point that was open at the last accepted state starts anew: traction zero, law in its initial state. Its Δg_t is
+// that of the whole increment, for when in the increment it closed is not known.
+#include "contact/tangential_part.hpp"
+
+#include "base/error.hpp"
+#include "math/reference_element.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace amontons {
+
+namespace {
+
+/// Stands for no status in what the last tangent was made for.
+constexpr std::uint8_t unknown_status = 255;
+
+double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// v − n (n · v).
+TangentVector tangential(const std::array<double, 3>& v, const std::array<double, 3>& n) {
+  const double along = dot(v, n);
+  return {v[0] - along * n[0], v[1] - along * n[1], v[2] - along * n[2]};
+}
+
+/// Direction of the traction times the slip.
+TangentVector slip_vector(const FrictionResponse& response) {
+  const double size = std::hypot(response.traction[0], response.traction[1], response.traction[2]);
+  const double factor = size > 0.0 ? response.slip / size : 0.0;
+  return {factor * response.traction[0], factor * response.traction[1], factor * response.traction[2]};
+}
+
+} // namespace
+
+TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair, const ContactPoints& points,
+                               const NodeField& nodes, std::span<const std::int32_t> position, double scale)
+    : layout_(layout), pair_(pair), points_(points), nodes_(nodes), position_(position), scale_(scale),
+      multipliers_(layout.dim(), std::vector<double>(nodes.nodes.size(), 0.0)), multipliers_old_(multipliers_) {
+  const std::size_t n = points.points().size();
+  history_.resize(n);
+  factor_.assign(n, 1.0);
+  responses_.resize(n);
+  jump_.resize(n);
+  increment_.resize(n);
+  active_.assign(n, 0);
+  pressed_.assign(n, 0);
+  assembled_status_.assign(n, unknown_status);
+  if (!is_unknown()) return;
+  std::vector<PetscInt> equations;
+  for (int c = 0; c < layout.dim(); ++c)
+    for (const auto node : nodes.nodes)
+      equations.push_back(layout.extra_equation(pair.friction->field + c, node));
+  const auto size = static_cast<PetscInt>(equations.size());
+  IsHandle from;
+  AMT_PETSC(ISCreateGeneral(layout.mesh().comm, size, equations.data(), PETSC_COPY_VALUES, from.put()));
+  AMT_PETSC(VecCreateSeq(PETSC_COMM_SELF, size, local_multipliers_.put()));
+  const auto global = layout.new_vector();
+  AMT_PETSC(VecScatterCreate(global, from, local_multipliers_, nullptr, multiplier_scatter_.put()));
+}
+
+// --- state at a point ------------------------------------------------------------------------------------------------
+
+std::array<double, 3> TangentialPart::displacement_jump(const ContactPoint& point, const State& state) const {
+  const int d = layout_.dim();
+  std::array<double, 3> jump{};
+  const auto nodes = points_.slave().facet(point.facet);
+  const auto shape = points_.slave_shape(point);
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (int c = 0; c < d; ++c)
+      jump[c] += shape[a] * state.displacement[std::size_t(nodes[a]) * d + c];
+  if (point.master < 0) return jump;
+  const auto masters = points_.master()->nodes(point.master);
+  for (std::size_t b = 0; b < masters.size(); ++b) {
+    const auto displacement = points_.master()->displacement(masters[b]);
+    for (int c = 0; c < d; ++c)
+      jump[c] -= point.master_shape[b] * displacement[c];
+  }
+  return jump;
+}
+
+TangentVector TangentialPart::multiplier_at(const ContactPoint& point) const {
+  const auto nodes = points_.slave().facet(point.facet);
+  const auto shape = points_.multiplier_shape(point);
+  TangentVector lambda{};
+  for (std::size_t a = 0; a < shape.size(); ++a)
+    for (int c = 0; c < layout_.dim(); ++c)
+      lambda[c] += shape[a] * multipliers_[c][position_[nodes[a]]];
+  return lambda;
+}
+
+void TangentialPart::fetch_multipliers(const State& state) {
+  if (!is_unknown()) return;
+  AMT_PETSC(VecScatterBegin(multiplier_scatter_, state.unknowns, local_multipliers_, INSERT_VALUES, SCATTER_FORWARD));
+  AMT_PETSC(VecScatterEnd(multiplier_scatter_, state.unknowns, local_multipliers_, INSERT_VALUES, SCATTER_FORWARD));
+  VecReader values(local_multipliers_);
+  PetscInt at = 0;
+  for (auto& component : multipliers_)
+    for (double& value : component)
+      value = scale_ * values[at++];
+}
+
+/// The friction factor of each point, anew when time has changed. Collective.
+void TangentialPart::find_factors(double time) {
+  if (!pair_.friction->factor || time == factor_time_) return;
+  factor_time_ = time;
+  together(layout_.mesh().comm, [&] {
+    for (std::size_t i = 0; i < factor_.size(); ++i) {
+      factor_[i] = (*pair_.friction->factor)(time, points_.points()[i].place);
+      if (!(factor_[i] >= 0.0))
+        throw UserError("contact: friction_factor of the pair '" + pair_.name +
+                        "' is negative or not a number at t = " + std::to_string(time) +
+                        ". Make it an expression that is never below zero.");
+    }
+  });
+}
+
+void TangentialPart::evaluate(const State& state, std::span<const double> sigma, std::span<const std::uint8_t> active) {
+  fetch_multipliers(state);
+  find_factors(state.time);
+  const auto& points = points_.points();
+  const std::array<double, 3> shift = points_.has_rigid_master() ? points_.rigid_shift() : std::array<double, 3>{};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& point = points[i];
+    const auto& old = history_[i];
+    active_[i] = active[i];
+    jump_[i] = displacement_jump(point, state);
+    std::array<double, 3> moved{}, trial{};
+    for (int c = 0; c < 3; ++c) {
+      jump_[i][c] -= shift[c];
+      moved[c] = jump_[i][c] - old.jump[c];
+    }
+    if (!active[i]) {
+      responses_[i] = {};
+      increment_[i] = tangential(moved, point.normal);
+      pressed_[i] = 0;
+      continue;
+    }
+    increment_[i] = tangential(moved, point.normal);
+    const auto lambda = has_multipliers() ? multiplier_at(point) : old.traction;
+    const auto held = tangential(lambda, point.normal);
+    for (int c = 0; c < 3; ++c)
+      trial[c] = held[c] + point.epsilon * increment_[i][c];
+    const FrictionContext context{
+        .dt = std::max(0.0, state.time - accepted_time_), .factor = factor_[i], .new_contact = old.open};
+    pressed_[i] = sigma[i] < 0.0;
+    responses_[i] = return_map(pair_.friction->law, context, trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
+  }
+}
+
+ContactStatus TangentialPart::status(std::size_t i) const {
+  if (!active_[i]) return ContactStatus::Open;
+  return responses_[i].status == FrictionStatus::Slip ? ContactStatus::Slip : ContactStatus::Stick;
+}
+
+// --- assembly --------------------------------------------------------------------------------------------------------
+
+void TangentialPart::gather_multiplier_equations(std::int32_t facet, std::vector<PetscInt>& equations) const {
+  if (!is_unknown()) return;
+  const auto nodes = points_.slave().facet(facet);
+  for (int a = 0; a < num_vertices(points_.slave().types[facet]); ++a)
+    for (int c = 0; c < layout_.dim(); ++c)
+      equations.push_back(layout_.extra_equation(pair_.friction->field + c, nodes[a]));
+}
+
+void TangentialPart::add_residual(std::size_t begin, std::size_t end, Residual& residual) const {
+  const auto& points = points_.points();
+  const auto& first = points[begin];
+  const int d = layout_.dim();
+  const auto nodes = points_.slave().facet(first.facet);
+  std::vector<PetscInt> masters, unknowns;
+  if (first.master >= 0)
+    for (const auto node : points_.master()->nodes(first.master)) {
+      const auto of_node = points_.master()->equations(node);
+      masters.insert(masters.end(), of_node.begin(), of_node.end());
+    }
+  gather_multiplier_equations(first.facet, unknowns);
+  std::vector<double> on_master(masters.size(), 0.0), on_unknowns(unknowns.size(), 0.0);
+  bool any = false;
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto& traction = responses_[i].traction;
+    const double weight = points[i].weight;
+    if (active_[i]) {
+      any = true;
+      const auto shape = points_.slave_shape(points[i]);
+      for (std::size_t a = 0; a < nodes.size(); ++a)
+        for (int c = 0; c < d; ++c)
+          residual.nodal()[std::size_t(nodes[a]) * d + c] += weight * shape[a] * traction[c];
+      for (std::size_t k = 0; k < masters.size(); ++k)
+        on_master[k] -= weight * points[i].master_shape[k / d] * traction[k % d];
+    }
+    if (!is_unknown()) continue;
+    const auto shape = points_.multiplier_shape(points[i]);
+    const double factor = weight * scale_ / points[i].epsilon;
+    for (std::size_t a = 0; a < shape.size(); ++a)
+      for (int c = 0; c < d; ++c)
+        on_unknowns[a * d + c] += factor * shape[a] * (traction[c] - multipliers_[c][position_[nodes[a]]]);
+  }
+  if (any) residual.add(masters, on_master);
+  if (is_unknown()) residual.add(unknowns, on_unknowns);
+}
+
+bool TangentialPart::add_tangent(std::size_t begin, std::size_t end, const ContactBlock& layout, bool guess_stick,
+                                 std::span<double> block) const {
+  const auto& points = points_.points();
+  const int d = layout_.dim();
+  const std::size_t n = layout.size;
+  std::vector<double> motion(d * n), response(d * n), test(d * n); // rows: components; columns: equations
+  bool any = false;
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto& point = points[i];
+    const auto shape = points_.multiplier_shape(point);
+    const double weight = point.weight;
+    if (is_unknown()) {
+      any = true;
+      for (std::size_t a = 0; a < shape.size(); ++a)
+        for (int c = 0; c < d; ++c)
+          block[(layout.tangential_multipliers + a * d + c) * (n + 1)] -=
+              weight * scale_ * scale_ / point.epsilon * shape[a];
+    }
+    if (!active_[i]) continue;
+    any = true;
+    jump_variation(point, layout, motion);
+    trial_tangent(i, layout, guess_stick, motion, response);
+    test = motion;
+    if (is_unknown())
+      for (std::size_t a = 0; a < shape.size(); ++a)
+        for (int c = 0; c < d; ++c)
+          test[c * n + layout.tangential_multipliers + a * d + c] = scale_ / point.epsilon * shape[a];
+    for (int c = 0; c < d; ++c)
+      for (std::size_t row = 0; row < n; ++row) {
+        const double factor = weight * test[c * n + row];
+        if (factor == 0.0) continue;
+        for (std::size_t column = 0; column < n; ++column)
+          block[row * n + column] += factor * response[c * n + column];
+      }
+  }
+  return any;
+}
+
+/// ∂(u_slave − u_master) / ∂(equations), dim x n.
+void TangentialPart::jump_variation(const ContactPoint& point, const ContactBlock& layout,
+                                    std::span<double> motion) const {
+  const int d = layout_.dim();
+  const std::size_t n = layout.size;
+  std::fill(motion.begin(), motion.end(), 0.0);
+  const auto shape = points_.slave_shape(point);
+  for (std::size_t a = 0; a < shape.size(); ++a)
+    for (int c = 0; c < d; ++c)
+      motion[c * n + a * d + c] = shape[a];
+  if (layout.master < 0) return;
+  for (std::size_t b = 0; b < points_.master()->nodes(point.master).size(); ++b)
+    for (int c = 0; c < d; ++c)
+      motion[c * n + layout.master + b * d + c] = -point.master_shape[b];
+}
+
+/// ∂σ_t / ∂(equations), dim x n.
+void TangentialPart::trial_tangent(std::size_t i, const ContactBlock& layout, bool guess_stick,
+                                   std::span<const double> motion, std::span<double> response) const {
+  const auto& point = points_.points()[i];
+  auto derivative = responses_[i];
+  if (guess_stick) {
+    derivative.dtraction_dq = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+    derivative.dtraction_dp = {};
+  }
+  const int d = layout_.dim();
+  const std::size_t n = layout.size;
+  std::array<std::array<double, 3>, 3> projected{}; // D P
+  for (int r = 0; r < d; ++r)
+    projected[r] = tangential(derivative.dtraction_dq[r], point.normal);
+  const auto shape = points_.multiplier_shape(point);
+  for (std::size_t column = 0; column < n; ++column) {
+    double along = 0.0;
+    for (int c = 0; c < d; ++c)
+      along += point.normal[c] * motion[c * n + column];
+    for (int r = 0; r < d; ++r) {
+      double sum = pressed_[i] ? -derivative.dtraction_dp[r] * along : 0.0;
+      for (int c = 0; c < d; ++c)
+        sum += projected[r][c] * motion[c * n + column];
+      response[r * n + column] = point.epsilon * sum;
+    }
+  }
+  if (!is_unknown()) return;
+  for (std::size_t a = 0; a < shape.size(); ++a)
+    for (int r = 0; r < d; ++r) {
+      if (pressed_[i])
+        response[r * n + layout.normal_multipliers + a] -= scale_ * shape[a] * derivative.dtraction_dp[r];
+      for (int c = 0; c < d; ++c)
+        response[r * n + layout.tangential_multipliers + a * d + c] += scale_ * shape[a] * projected[r][c];
+    }
+}
+
+bool TangentialPart::tangent_changed() const {
+  for (std::size_t i = 0; i < responses_.size(); ++i) {
+    const auto now = status(i);
+    if (now == ContactStatus::Slip || static_cast<std::uint8_t>(now) != assembled_status_[i]) return true;
+  }
+  return false;
+}
+
+void TangentialPart::remember_tangent(bool guess_stick) {
+  for (std::size_t i = 0; i < responses_.size(); ++i)
+    assembled_status_[i] = guess_stick ? unknown_status : static_cast<std::uint8_t>(status(i));
+}
+
+// --- history and multipliers -----------------------------------------------------------------------------------------
+
+void TangentialPart::commit(const State& state) {
+  for (std::size_t i = 0; i < history_.size(); ++i)
+    history_[i] = {.traction = responses_[i].traction,
+                   .jump = jump_[i],
+                   .state = responses_[i].state,
+                   .slip = history_[i].slip + responses_[i].slip,
+                   .open = active_[i] == 0};
+  multipliers_old_ = multipliers_;
+  accepted_time_ = state.time;
+}
+
+void TangentialPart::roll_back() { multipliers_ = multipliers_old_; }
+
+std::vector<std::vector<double>> TangentialPart::multiplier_defect() const {
+  std::vector<std::vector<double>> defect(multipliers_.size(), std::vector<double>(nodes_.nodes.size(), 0.0));
+  const auto& points = points_.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto nodes = points_.slave().facet(points[i].facet);
+    const auto shape = points_.multiplier_shape(points[i]);
+    for (std::size_t a = 0; a < shape.size(); ++a)
+      for (std::size_t c = 0; c < defect.size(); ++c) {
+        const auto at = position_[nodes[a]];
+        defect[c][at] += points[i].weight * shape[a] * (responses_[i].traction[c] - multipliers_[c][at]);
+      }
+  }
+  return defect;
+}
+
+// --- energy and reports ----------------------------------------------------------------------------------------------
+
+/// Elastic energy per area that a penalty spring under this traction holds.
+double TangentialPart::spring_energy(const TangentVector& traction, double epsilon) const {
+  return has_multipliers() ? 0.0 : dot(traction, traction) / (2.0 * epsilon);
+}
+
+double TangentialPart::stored_energy() const {
+  double energy = 0.0;
+  const auto& points = points_.points();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    energy += points[i].weight * spring_energy(responses_[i].traction, points[i].epsilon);
+  return energy;
+}
+
+/// path_error: the trapezoidal work of the shear traction over the increment against what the end of the increment
+/// says, dissipation and stored energy, plus half the work of the change of traction: how far book-keeping by the ends
+/// of increments can be off at the interface.
+TangentialSums TangentialPart::sums() const {
+  TangentialSums sums;
+  const auto& points = points_.points();
+  const auto shift = points_.has_rigid_master() ? points_.rigid_shift() : std::array<double, 3>{};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& now = responses_[i];
+    const auto& old = history_[i];
+    const double weight = points[i].weight;
+    if (status(i) == ContactStatus::Stick) sums.stick_area += weight;
+    if (status(i) == ContactStatus::Slip) sums.slip_area += weight;
+    const double dissipation = dot(now.traction, slip_vector(now));
+    sums.dissipation += weight * dissipation;
+    for (int c = 0; c < 3; ++c)
+      sums.work += weight * now.traction[c] * (jump_[i][c] + shift[c]);
+    const double trapezoid = 0.5 * (dot(now.traction, increment_[i]) + dot(old.traction, increment_[i]));
+    const double change = 0.5 * (dot(now.traction, increment_[i]) - dot(old.traction, increment_[i]));
+    const double stored =
+        spring_energy(now.traction, points[i].epsilon) - spring_energy(old.traction, points[i].epsilon);
+    sums.path_error += weight * (std::abs(trapezoid - dissipation - stored) + std::abs(change));
+  }
+  return sums;
+}
+
+void TangentialPart::sample(ContactSamples& samples) const {
+  samples.has_friction = true;
+  for (std::size_t i = 0; i < responses_.size(); ++i) {
+    samples.status[i] = status(i);
+    const auto& traction = responses_[i].traction; // conjugate to u_slave: what the slave exerts
+    samples.shear.push_back({-traction[0], -traction[1], -traction[2]});
+    samples.tau_c.push_back(responses_[i].tau_c);
+    samples.slip.push_back(slip_vector(responses_[i]));
+    samples.accumulated_slip.push_back(history_[i].slip + responses_[i].slip);
+  }
+}
+
+} // namespace amontons

@@ -1,0 +1,109 @@
+// Friction of one contact pair: owned by its ContactForm, and only by one with friction.
+#pragma once
+
+#include "contact/contact_pair.hpp"
+#include "contact/contact_points.hpp"
+#include "contact/contact_samples.hpp"
+#include "form/form.hpp"
+#include "friction/return_mapping.hpp"
+
+#include <span>
+#include <vector>
+
+namespace amontons {
+
+/// Rows and columns of a group's dense block (ContactForm::gather_equations): slave displacements, node by node, from
+/// 0 on; then the groups below. Absent ones are negative.
+struct ContactBlock {
+  std::size_t size;
+  std::ptrdiff_t normal_multipliers, tangential_multipliers, master;
+};
+
+/// Sums over the points of this rank.
+struct TangentialSums {
+  double stick_area = 0.0, slip_area = 0.0;
+  double dissipation = 0.0; // ∫ σ_t · slip over the increment, >= 0
+  double work = 0.0;        // ∫ σ_t · (u_slave − u_master), a rigid master's motion not included
+  double path_error = 0.0;  // see TangentialPart::sums
+};
+
+class TangentialPart {
+ public:
+  /// `nodes`: the multiplier nodes of the pair; `scale`: traction per unknown multiplier; `position`: of a local mesh
+  /// node in `nodes`. Views outlive this object. Collective.
+  TangentialPart(const DofLayout& layout, const ContactPair& pair, const ContactPoints& points, const NodeField& nodes,
+                 std::span<const std::int32_t> position, double scale);
+
+  /// Shear traction of all points, given their normal traction (zero or positive: none) and which are in contact.
+  /// Throws UserError where the friction factor is negative. Collective.
+  void evaluate(const State& state, std::span<const double> sigma, std::span<const std::uint8_t> active);
+  const FrictionResponse& response(std::size_t i) const { return responses_[i]; }
+  const TangentVector& traction(std::size_t i) const { return responses_[i].traction; }
+  ContactStatus status(std::size_t i) const;
+
+  /// Forces of points [begin, end), which lie on one slave facet and one master facet.
+  void add_residual(std::size_t begin, std::size_t end, Residual& residual) const;
+  /// Their tangent, added to a block; returns whether anything was added. `guess_stick`: that of points which all
+  /// stick.
+  bool add_tangent(std::size_t begin, std::size_t end, const ContactBlock& layout, bool guess_stick,
+                   std::span<double> block) const;
+  void gather_multiplier_equations(std::int32_t facet, std::vector<PetscInt>& equations) const;
+  /// Is the tangent another than when remember_tangent was called?
+  bool tangent_changed() const;
+  void remember_tangent(bool guess_stick);
+
+  void commit(const State& state);
+  void roll_back();
+
+  /// Cartesian components of λ_t at the pair's multiplier nodes: traction.
+  const std::vector<std::vector<double>>& multipliers() const { return multipliers_; }
+  void hold_multipliers(std::vector<std::vector<double>> multipliers) { multipliers_ = std::move(multipliers); }
+  /// This rank's parts of ∫ N_i (σ_t − λ_t,i) at the nodes, component by component.
+  std::vector<std::vector<double>> multiplier_defect() const;
+
+  TangentialSums sums() const;
+  /// Potential (elastic energy of the penalty springs) on this rank; zero with multipliers.
+  double stored_energy() const;
+  /// Fills in what friction adds to the samples of the pair's points.
+  void sample(ContactSamples& samples) const;
+
+ private:
+  /// A point as of the last accepted state.
+  struct History {
+    TangentVector traction{};
+    std::array<double, 3> jump{}; // u_slave − u_master − rigid shift
+    FrictionState state{};
+    double slip = 0.0; // accumulated over all contacts of the point
+    bool open = true;
+  };
+  bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
+  bool has_multipliers() const { return !std::holds_alternative<Penalty>(pair_.enforcement); }
+  std::array<double, 3> displacement_jump(const ContactPoint& point, const State& state) const;
+  TangentVector multiplier_at(const ContactPoint& point) const;
+  void fetch_multipliers(const State& state);
+  void find_factors(double time);
+  void jump_variation(const ContactPoint& point, const ContactBlock& layout, std::span<double> motion) const;
+  void trial_tangent(std::size_t i, const ContactBlock& layout, bool guess_stick, std::span<const double> motion,
+                     std::span<double> response) const;
+  double spring_energy(const TangentVector& traction, double epsilon) const;
+
+  const DofLayout& layout_;
+  const ContactPair& pair_;
+  const ContactPoints& points_;
+  const NodeField& nodes_;
+  std::span<const std::int32_t> position_;
+  double scale_;
+  std::vector<std::vector<double>> multipliers_, multipliers_old_; // [component][node]
+  std::vector<History> history_;
+  double accepted_time_ = 0.0, factor_time_ = -1.0;
+  std::vector<double> factor_;
+  // At the last evaluation, per point:
+  std::vector<FrictionResponse> responses_;
+  std::vector<std::array<double, 3>> jump_; // u_slave − u_master − rigid shift
+  std::vector<TangentVector> increment_;    // Δg_t
+  std::vector<std::uint8_t> active_, pressed_, assembled_status_;
+  VecHandle local_multipliers_;
+  ScatterHandle multiplier_scatter_;
+};
+
+} // namespace amontons

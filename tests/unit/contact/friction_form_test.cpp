@@ -1,0 +1,281 @@
+// Friction in a contact pair as a form: tangent against residual in stick, slip and both, the traction against closed
+// forms, history, invariance.
+#include "contact/contact_form.hpp"
+#include "form/problem.hpp"
+#include "two_blocks.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <doctest/doctest.h>
+
+using namespace amontons;
+using namespace amontons::test;
+
+namespace {
+
+constexpr double gap0 = 0.01;
+
+enum class Motion { Stick, Slip, Mixed };
+
+struct Scene {
+  int dim = 2;
+  Enforcement enforcement = Penalty{};
+  FrictionLaw law = Coulomb{.mu = 0.3};
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  Space space = Space::PlaneStrain;
+};
+
+/// Two blocks with nothing but a frictional pair between them, and displacements by formula.
+struct Fixture {
+  Scene scene;
+  Mesh mesh;
+  std::vector<NodeField> fields;
+  std::unique_ptr<DofLayout> layout;
+  std::unique_ptr<Problem> problem;
+  ContactForm* form = nullptr;
+  VecHandle u;
+
+  static Mesh turned_mesh(const Scene& scene) {
+    auto raw = two_blocks(PETSC_COMM_WORLD, scene.dim, 3, 4, gap0);
+    for (std::size_t i = 0; i + 2 < raw.coordinates.size(); i += 3) {
+      Eigen::Map<Eigen::Vector3d> x(&raw.coordinates[i]);
+      x = (scene.turn * x).eval();
+    }
+    return distribute_mesh(PETSC_COMM_WORLD, raw, {{"upper_bottom", "lower_top"}}, 0);
+  }
+
+  explicit Fixture(const Scene& s) : scene(s), mesh(turned_mesh(s)) {
+    const bool unknown = std::holds_alternative<Semismooth>(scene.enforcement);
+    if (unknown) fields.assign(1 + scene.dim, multiplier_nodes(mesh, "interface", "upper_bottom"));
+    layout = std::make_unique<DofLayout>(mesh, std::vector<TiedGroup>{}, fields);
+    ContactPair pair{.name = "interface",
+                     .slave = "upper_bottom",
+                     .master = std::string("lower_top"),
+                     .enforcement = scene.enforcement,
+                     .projection = {},
+                     .space = scene.dim == 3 ? Space::Solid : scene.space,
+                     .stiffness = {100.0, 300.0}};
+    pair.alpha = 3.0;
+    pair.search_distance = 0.5;
+    pair.friction = Friction{.law = scene.law, .factor = std::nullopt, .field = unknown ? 1 : -1};
+    auto contact = std::make_unique<ContactForm>(*layout, std::move(pair));
+    form = contact.get();
+    std::vector<std::unique_ptr<Form>> forms;
+    forms.push_back(std::move(contact));
+    problem = std::make_unique<Problem>(*layout, std::move(forms), std::vector<PrescribedDisplacement>{});
+    u = layout->new_vector();
+    if (!std::holds_alternative<Uzawa>(scene.enforcement)) return;
+    std::vector<double> normal;
+    std::vector<std::vector<double>> shear(scene.dim);
+    for (const auto node : form->nodes().nodes) {
+      normal.push_back(-0.2 - 0.1 * mesh.position(node)[0]);
+      for (int c = 0; c < scene.dim; ++c)
+        shear[c].push_back(0.5 - 0.2 * c);
+    }
+    form->hold_multipliers(normal);
+    form->tangential()->hold_multipliers(shear);
+  }
+
+  /// The upper block moves by `push` along x (and a little along y in 3D) more with growing x when `spread`, and goes
+  /// down where x < 0.55, up elsewhere; waves of size `wiggle` on everything.
+  void set(Vec vec, double push, double spread, double down, double wiggle) const {
+    VecArray values(vec);
+    const int d = mesh.dim;
+    for (std::int32_t node = 0; node < mesh.num_owned; ++node) {
+      Eigen::Vector3d x = Eigen::Vector3d::Zero(), v = Eigen::Vector3d::Zero();
+      for (int c = 0; c < d; ++c)
+        x[c] = mesh.position(node)[c];
+      x = (scene.turn.transpose() * x).eval();
+      for (int c = 0; c < d; ++c)
+        v[c] = wiggle * std::sin(1.0 + 3.0 * x[0] + 2.0 * x[d - 1] + 5.0 * c);
+      if (x[d - 1] > 1.0 + 0.5 * gap0) {
+        v[d - 1] += down * (-0.05 + 0.1 * (x[0] > 0.55));
+        v[0] += push + spread * x[0];
+        if (d == 3) v[1] += 0.4 * push;
+      }
+      v = (scene.turn * v).eval();
+      for (int c = 0; c < d; ++c)
+        values[node * d + c] = v[c];
+    }
+    for (PetscInt i = mesh.num_owned * d; i < values.size(); ++i) // multipliers
+      values[i] = -0.001 * down + wiggle * 0.01 * std::cos(double(i - mesh.num_owned * d));
+  }
+
+  /// An accepted state that sticks, then a state of the wanted kind under test.
+  void prepare(Motion motion) {
+    set(u, 0.002, 0.0, 1.0, 1e-4);
+    problem->begin_increment(0.5, u);
+    const auto residual = layout->new_vector();
+    problem->residual(u, residual);
+    problem->commit(u);
+    const double push = motion == Motion::Stick ? 0.004 : motion == Motion::Slip ? 0.08 : 0.001;
+    set(u, push, motion == Motion::Mixed ? 0.05 : 0.0, 1.02, 1e-4);
+    problem->begin_increment(1.0, u);
+  }
+};
+
+double norm(Vec vec) {
+  double value = 0.0;
+  VecNorm(vec, NORM_2, &value);
+  return value;
+}
+
+double asymmetry(Mat matrix) {
+  MatHandle transposed;
+  MatTranspose(matrix, MAT_INITIAL_MATRIX, transposed.put());
+  MatAXPY(transposed, -1.0, matrix, DIFFERENT_NONZERO_PATTERN);
+  double difference = 0.0, size = 0.0;
+  MatNorm(transposed, NORM_FROBENIUS, &difference);
+  MatNorm(matrix, NORM_FROBENIUS, &size);
+  return difference / size;
+}
+
+/// Central differences, and the Taylor remainder that must fall like h² (or be rounding, where the law is linear).
+void check_tangent(Fixture& fixture, Motion motion) {
+  fixture.prepare(motion);
+  const auto direction = fixture.layout->new_vector(), x = fixture.layout->new_vector();
+  const auto base = fixture.layout->new_vector(), plus = fixture.layout->new_vector(),
+             minus = fixture.layout->new_vector(), product = fixture.layout->new_vector();
+  fixture.set(direction, 0.7, 0.3, 0.0, 1.0);
+  auto matrix = fixture.problem->new_matrix();
+  REQUIRE(fixture.problem->tangent(fixture.u, matrix)); // of the first guess: all stick
+  CHECK(asymmetry(matrix) < 1e-13);
+  REQUIRE(fixture.problem->tangent(fixture.u, matrix));
+  const auto totals = fixture.form->totals(fixture.problem->state_at(fixture.u));
+  CHECK((totals.stick_area > 0.1) == (motion != Motion::Slip));
+  CHECK((totals.slip_area > 0.05) == (motion != Motion::Stick));
+  CHECK(MatMult(matrix, direction, product) == 0);
+  CHECK((asymmetry(matrix) > 1e-3) == (motion != Motion::Stick));
+  fixture.problem->residual(fixture.u, base);
+  const double scale = norm(product);
+  CHECK(scale > 1e-3);
+  const auto residual_at = [&](double step, Vec result) {
+    VecWAXPY(x, step, direction, fixture.u);
+    fixture.problem->residual(x, result);
+  };
+  const double step = 1e-6;
+  residual_at(step, plus);
+  residual_at(-step, minus);
+  VecAXPY(plus, -1.0, minus);
+  VecScale(plus, 0.5 / step);
+  VecAXPY(plus, -1.0, product);
+  CHECK(norm(plus) <= 1e-7 * scale);
+  double remainder[2];
+  for (const int half : {0, 1}) {
+    const double h = 4e-5 / (1 + half);
+    residual_at(h, plus);
+    VecAXPY(plus, -1.0, base);
+    VecAXPY(plus, -h, product);
+    remainder[half] = norm(plus);
+  }
+  const double rounding = 1e-12 * norm(base);
+  CHECK(remainder[1] <= remainder[0] / 3.8 + rounding);
+}
+
+} // namespace
+
+TEST_CASE("tangent of a frictional pair is the derivative of its residual in stick, slip and both") {
+  const FrictionLaw laws[] = {Coulomb{.mu = 0.3, .cohesion = 0.5},
+                              VelocityWeakening{.mu_s = 0.3, .mu_k = 0.2, .v_c = 0.5}};
+  for (const int dim : {2, 3})
+    for (const Enforcement& enforcement : {Enforcement(Penalty{}), Enforcement(Uzawa{}), Enforcement(Semismooth{0})})
+      for (const auto& law : laws)
+        for (const auto motion : {Motion::Stick, Motion::Slip, Motion::Mixed}) {
+          CAPTURE(dim);
+          CAPTURE(enforcement.index());
+          CAPTURE(law.index());
+          CAPTURE(int(motion));
+          Fixture fixture({.dim = dim, .enforcement = enforcement, .law = law});
+          check_tangent(fixture, motion);
+        }
+}
+
+TEST_CASE("axisymmetric: tangent, and tractions by the full turn") {
+  Fixture fixture({.space = Space::Axisymmetric});
+  check_tangent(fixture, Motion::Mixed);
+}
+
+TEST_CASE("sliding penalty contact: shear is mu times pressure against the motion, dissipation is their work") {
+  for (const int dim : {2, 3}) {
+    Fixture fixture({.dim = dim});
+    fixture.prepare(Motion::Slip);
+    const auto state = fixture.problem->state_at(fixture.u);
+    const auto samples = fixture.form->samples(state);
+    REQUIRE(samples.has_friction);
+    double dissipation = 0.0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto& shear = samples.shear[i];
+      const double size = std::hypot(shear[0], shear[1], shear[2]);
+      if (samples.status[i] == ContactStatus::Open) {
+        CHECK(size == 0.0);
+        CHECK(samples.pressure[i] == 0.0);
+        continue;
+      }
+      CHECK(size == doctest::Approx(0.3 * samples.pressure[i]).epsilon(1e-12));
+      CHECK(shear[0] < 0.0); // on the upper block, which moves to the right
+      CHECK(std::abs(shear[dim - 1]) < 1e-12);
+      dissipation -= (shear[0] * samples.slip[i][0] + shear[1] * samples.slip[i][1]) * samples.weight[i];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &dissipation, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    const auto totals = fixture.form->totals(state);
+    CHECK(totals.dissipation > 0.01);
+    CHECK(totals.dissipation == doctest::Approx(dissipation).epsilon(1e-12));
+    CHECK(totals.tangential_force[0] == doctest::Approx(totals.force[0]).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("history: an accepted slip leaves its traction, a rolled back one nothing, release forgets") {
+  Fixture fixture({.enforcement = Penalty{}});
+  fixture.prepare(Motion::Slip);
+  const auto slid = fixture.form->totals(fixture.problem->state_at(fixture.u));
+  fixture.problem->roll_back();
+  const auto again = fixture.form->totals(fixture.problem->state_at(fixture.u));
+  CHECK(again.tangential_force[0] == slid.tangential_force[0]);
+  fixture.problem->commit(fixture.u);
+  const auto rest = fixture.form->totals(fixture.problem->state_at(fixture.u));
+  CHECK(rest.dissipation == doctest::Approx(0.0));
+  CHECK(rest.tangential_force[0] == doctest::Approx(slid.tangential_force[0]).epsilon(1e-12));
+
+  fixture.set(fixture.u, 0.08, 0.0, -0.1, 0.0); // lift
+  const auto lifted = fixture.form->totals(fixture.problem->state_at(fixture.u));
+  CHECK(lifted.stick_area + lifted.slip_area < 0.7);
+  fixture.set(fixture.u, 0.08, 0.0, 0.0, 0.0); // nowhere in contact
+  fixture.problem->commit(fixture.u);
+  fixture.set(fixture.u, 0.08, 0.0, 1.0, 0.0); // back without any tangential motion: no shear
+  const auto back = fixture.form->totals(fixture.problem->state_at(fixture.u));
+  CHECK(back.force[1] > 1.0);
+  CHECK(std::abs(back.tangential_force[0]) < 1e-10 * back.force[1]);
+}
+
+TEST_CASE("friction does not depend on the frame") {
+  for (const int dim : {2, 3}) {
+    Fixture straight({.dim = dim});
+    const Eigen::Vector3d axis = dim == 2 ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(1, 2, 0.5).normalized();
+    Fixture turned({.dim = dim, .turn = Eigen::AngleAxisd(0.65, axis).toRotationMatrix()});
+    straight.prepare(Motion::Mixed);
+    turned.prepare(Motion::Mixed);
+    const auto a = straight.form->totals(straight.problem->state_at(straight.u));
+    const auto b = turned.form->totals(turned.problem->state_at(turned.u));
+    const Eigen::Map<const Eigen::Vector3d> fa(a.tangential_force.data()), fb(b.tangential_force.data());
+    CHECK(fa.norm() > 0.1);
+    CHECK((turned.scene.turn * fa - fb).norm() <= 1e-10 * fa.norm());
+    CHECK(a.slip_area == doctest::Approx(b.slip_area).epsilon(1e-12));
+    CHECK(a.dissipation == doctest::Approx(b.dissipation).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("a pair without friction builds nothing tangential") {
+  const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, 2, 3, 4, gap0);
+  const DofLayout layout(mesh, {}, {});
+  ContactPair pair{.name = "interface",
+                   .slave = "upper_bottom",
+                   .master = std::string("lower_top"),
+                   .enforcement = Penalty{},
+                   .projection = {},
+                   .search_distance = 0.5,
+                   .space = Space::PlaneStrain,
+                   .stiffness = {100.0, 300.0}};
+  ContactForm form(layout, pair);
+  CHECK(form.tangential() == nullptr);
+  CHECK(form.tangent_is_symmetric());
+}
