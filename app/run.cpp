@@ -205,7 +205,7 @@ int Run::march_step(std::size_t step) {
     }
     control.accepted(outcome.newton);
     const bool last = control.finished() && step + 1 == scene_->deck.steps.size();
-    accept(control.finished() ? step + 1 : step, outcome, control.increment(), last);
+    accept(step, outcome, control.increment(), last);
   }
   return status_certified;
 }
@@ -232,8 +232,7 @@ void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_incr
   const Phase phase("output");
   history_->row(
       history_row(*scene_, *ledger_, last_totals_, {.time = time, .outcome = outcome, .certified = certified}));
-  progress(scene_->deck.steps[std::min(step, scene_->deck.steps.size() - 1)].name.value, outcome, last_totals_,
-           certified);
+  progress(scene_->deck.steps[step].name.value, outcome, last_totals_, certified);
   if (last || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns_, samples);
   write_checkpoint_file(step, next_increment);
 }

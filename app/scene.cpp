@@ -1,5 +1,6 @@
 #include "scene.hpp"
 
+#include "base/error.hpp"
 #include "base/timer.hpp"
 #include "form/support.hpp"
 #include "geometry/box_tree.hpp"
@@ -161,6 +162,25 @@ Conditions make_conditions(const Deck& deck) {
   return conditions;
 }
 
+/// A friction factor below zero is found before anything is computed: at the slave's nodes, at the start and at the end
+/// of each step. (What lies between is checked as the run gets there.) Collective.
+void check_friction_factors(const Deck& deck, const Mesh& mesh) {
+  together(mesh.comm, [&] {
+    for (const auto& pair : deck.contact) {
+      if (!pair.friction_factor) continue;
+      std::vector<double> times = {0.0};
+      for (const auto& step : deck.steps)
+        times.push_back(step.to);
+      for (const double time : times)
+        for (const auto node : mesh.node_groups.at(pair.slave.value))
+          if (!((*pair.friction_factor)(time, mesh.position(node)) >= 0.0))
+            throw UserError(pair.name.place.text() + ": the friction_factor of the pair '" + pair.name.value +
+                            "' is negative or not a number at t = " + std::to_string(time) +
+                            " on its slave surface. Make it an expression that is never below zero.");
+    }
+  });
+}
+
 } // namespace
 
 double Scene::bulk_energy(Vec unknowns) const {
@@ -180,6 +200,7 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   const auto& deck = scene->deck;
   const auto& mesh = scene->mesh;
   const Phase phase("set up");
+  check_friction_factors(deck, mesh);
   auto conditions = make_conditions(deck);
   const auto laws = body_laws(deck, mesh);
   const auto floating = find_floating_bodies(mesh, conditions.prescribed, deck.space == Space::Axisymmetric);

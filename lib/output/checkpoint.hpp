@@ -18,7 +18,7 @@ struct NodalArray {
 
 struct Checkpoint {
   double time = 0.0;
-  int step = 0;                // index of the deck's step that the next increment belongs to
+  int step = 0;                // index of the deck's step that the accepted state belongs to
   int increment = 0;           // number of accepted increments since the start of the run
   double next_increment = 0.0; // time span that the next increment should try
   /// Numbers known to all ranks alike.

@@ -8,12 +8,13 @@ import sys
 import tempfile
 from pathlib import Path
 
+import friction_cases
 import hertz_cases
 import other_cases
 import patch_cases
 from harness import Bench
 
-CASES = {**patch_cases.CASES, **hertz_cases.CASES, **other_cases.CASES}
+CASES = {**patch_cases.CASES, **hertz_cases.CASES, **other_cases.CASES, **friction_cases.CASES}
 
 
 def main():

@@ -16,6 +16,17 @@ def line_contact(force, radius, modulus):
     return a, 2.0 * force / (np.pi * a)
 
 
+def cattaneo_mindlin(x, a, limit, ratio):
+    """Stick half-width c and shear traction of a pressed and then sheared line contact; limit = mu p0, ratio = Q/(mu P).
+
+    K. L. Johnson, Contact Mechanics (1985), 7.2: c/a = sqrt(1 - Q/(mu P)),
+    q = mu p0 [sqrt(1 - (x/a)^2) - (c/a) sqrt(1 - (x/c)^2)], the second term for |x| < c.
+    """
+    c = a * np.sqrt(1.0 - ratio)
+    ellipse = lambda r: np.sqrt(np.maximum(0.0, 1.0 - (x / r) ** 2))
+    return c, limit * (ellipse(a) - c / a * ellipse(c))
+
+
 def sphere_contact(force, radius, modulus):
     """Contact radius a and peak pressure p0 of spheres under `force`, [J] 4.22 and 4.24."""
     a = np.cbrt(3.0 * force * radius / (4.0 * modulus))
