@@ -104,21 +104,8 @@ std::vector<ContactForm::Group> ContactForm::groups() const {
 
 double ContactForm::gap_at(const ContactPoint& point, const State& state) const {
   if (point.master == ContactPoint::none) return 1e300;
-  const int d = layout_.dim();
-  double gap = point.gap0;
-  const auto nodes = points_.slave().facet(point.facet);
-  const auto shape = points_.slave_shape(point);
-  for (std::size_t a = 0; a < nodes.size(); ++a)
-    for (int c = 0; c < d; ++c)
-      gap += point.normal[c] * shape[a] * state.displacement[std::size_t(nodes[a]) * d + c];
-  if (point.master == ContactPoint::rigid) return gap; // its motion is in gap0
-  const auto masters = points_.master()->nodes(point.master);
-  for (std::size_t b = 0; b < masters.size(); ++b) {
-    const auto displacement = points_.master()->displacement(masters[b]);
-    for (int c = 0; c < d; ++c)
-      gap -= point.normal[c] * point.master_shape[b] * displacement[c];
-  }
-  return gap;
+  const auto jump = points_.displacement_jump(point, state); // a rigid master's motion is in gap0
+  return point.gap0 + point.normal[0] * jump[0] + point.normal[1] * jump[1] + point.normal[2] * jump[2];
 }
 
 double ContactForm::multiplier_at(const ContactPoint& point) const {

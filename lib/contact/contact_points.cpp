@@ -231,6 +231,24 @@ std::span<const double> ContactPoints::multiplier_shape(const ContactPoint& poin
   return tabulation(type, pair_.integration_degree).value(point.rule_point);
 }
 
+std::array<double, 3> ContactPoints::displacement_jump(const ContactPoint& point, const State& state) const {
+  const int d = mesh_.dim;
+  std::array<double, 3> jump{};
+  const auto nodes = slave_->facet(point.facet);
+  const auto shape = slave_shape(point);
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (int c = 0; c < d; ++c)
+      jump[c] += shape[a] * state.displacement[std::size_t(nodes[a]) * d + c];
+  if (point.master < 0) return jump;
+  const auto masters = master_->nodes(point.master);
+  for (std::size_t b = 0; b < masters.size(); ++b) {
+    const auto displacement = master_->displacement(masters[b]);
+    for (int c = 0; c < d; ++c)
+      jump[c] -= point.master_shape[b] * displacement[c];
+  }
+  return jump;
+}
+
 std::array<double, 2> ContactPoints::xi(const ContactPoint& point) const {
   const auto& rule = quadrature(slave_->types[point.facet], pair_.integration_degree);
   const auto place = rule.point(point.rule_point);

@@ -5,6 +5,7 @@
 
 #include "contact/contact_pair.hpp"
 #include "contact/master_surface.hpp"
+#include "form/form.hpp"
 
 #include <array>
 #include <memory>
@@ -43,6 +44,9 @@ class ContactPoints {
   std::span<const double> slave_shape(const ContactPoint& point) const;
   std::span<const double> multiplier_shape(const ContactPoint& point) const;
   std::array<double, 2> xi(const ContactPoint& point) const;
+  /// u_slave − u_master at a point, with the master's displacements as of its last refresh (a rigid master's motion is
+  /// not in it).
+  std::array<double, 3> displacement_jump(const ContactPoint& point, const State& state) const;
   /// Moves a rigid master to where it is at time t and takes normals and gaps anew.
   void move_rigid_master(double t);
   std::array<double, 3> rigid_shift() const { return shift_; }

@@ -84,24 +84,6 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
 
 // --- state at a point ------------------------------------------------------------------------------------------------
 
-std::array<double, 3> TangentialPart::displacement_jump(const ContactPoint& point, const State& state) const {
-  const int d = layout_.dim();
-  std::array<double, 3> jump{};
-  const auto nodes = points_.slave().facet(point.facet);
-  const auto shape = points_.slave_shape(point);
-  for (std::size_t a = 0; a < nodes.size(); ++a)
-    for (int c = 0; c < d; ++c)
-      jump[c] += shape[a] * state.displacement[std::size_t(nodes[a]) * d + c];
-  if (point.master < 0) return jump;
-  const auto masters = points_.master()->nodes(point.master);
-  for (std::size_t b = 0; b < masters.size(); ++b) {
-    const auto displacement = points_.master()->displacement(masters[b]);
-    for (int c = 0; c < d; ++c)
-      jump[c] -= point.master_shape[b] * displacement[c];
-  }
-  return jump;
-}
-
 TangentVector TangentialPart::multiplier_at(const ContactPoint& point) const {
   const auto nodes = points_.slave().facet(point.facet);
   const auto shape = points_.multiplier_shape(point);
@@ -147,7 +129,7 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
     const auto& point = points[i];
     const auto& old = history_[i];
     active_[i] = active[i];
-    jump_[i] = displacement_jump(point, state);
+    jump_[i] = points_.displacement_jump(point, state);
     std::array<double, 3> moved{}, trial{};
     for (int c = 0; c < 3; ++c) {
       jump_[i][c] -= shift[c];

@@ -78,7 +78,6 @@ class TangentialPart {
   };
   bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
   bool has_multipliers() const { return !std::holds_alternative<Penalty>(pair_.enforcement); }
-  std::array<double, 3> displacement_jump(const ContactPoint& point, const State& state) const;
   TangentVector multiplier_at(const ContactPoint& point) const;
   void fetch_multipliers(const State& state);
   void find_factors(double time);
