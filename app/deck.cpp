@@ -211,6 +211,12 @@ ObjectRule<CertificateDeck> certificate_rule() {
                 "Sum of |pressure| |gap| / (total contact force x facet size).")
       .optional("balance", &CertificateDeck::balance, tolerance(), "Force and moment out of balance / force scale.")
       .optional("energy", &CertificateDeck::energy, tolerance(), "Violation of the energy bounds / external work.")
+      .optional("friction", &CertificateDeck::friction, tolerance(),
+                "Shear traction off the friction law's limit / largest limit; negative part of the frictional work.")
+      .optional(
+          "slip", &CertificateDeck::slip, tolerance(),
+          "Tangential motion of the surfaces that is not the slip claimed, weighted by the shear traction / largest "
+          "displacement increment on the surfaces.")
       .optional("volume_ratio", &CertificateDeck::volume_ratio, number("1", Range::between(0, 0.99)),
                 "Smallest volume ratio det F allowed.");
   return rule;

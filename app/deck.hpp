@@ -118,6 +118,8 @@ struct CertificateDeck {
   double complementarity = 1e-2; // sum |pressure| |gap| / (total force x facet size)
   double balance = 1e-6;         // force and moment out of balance / force scale
   double energy = 1e-6;          // violation of the energy bounds / external work
+  double friction = 1e-6;        // shear off the law's limit / largest limit; negative part of the frictional work
+  double slip = 0.05;            // motion that is not the slip claimed / motion of the surfaces
   double volume_ratio = 0.0;     // smallest det F allowed
 };
 

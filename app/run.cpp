@@ -223,7 +223,7 @@ void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_incr
   bool certified = false;
   {
     const Phase phase("certificate");
-    certified = certificate_.add(certify_state(*scene_, *ledger_, samples, unknowns_), state.time);
+    certified = certificate_.add(certify_state(*scene_, *ledger_, samples, accepted_, unknowns_), state.time);
   }
   const double time = state.time;
   scene_->problem->commit(unknowns_);

@@ -238,14 +238,26 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   return scene;
 }
 
+namespace {
+
+MovedShape moved_shape(const RigidMaster& rigid, const std::array<double, 3>& shift, double accepted_time) {
+  MovedShape shape{rigid.shape, shift, {}};
+  for (std::size_t c = 0; c < 3; ++c)
+    if (rigid.displacement[c]) shape.increment[c] = shift[c] - (*rigid.displacement[c])(accepted_time);
+  return shape;
+}
+
+} // namespace
+
 std::vector<ContactPairNames> pair_names(const Scene& scene) {
   std::vector<ContactPairNames> names;
   for (const auto* contact : scene.contacts) {
     ContactPairNames pair{.name = contact->pair().name, .slave = contact->pair().slave, .master = {}};
     if (const auto* rigid = std::get_if<RigidMaster>(&contact->pair().master))
-      pair.master = MovedShape{rigid->shape, contact->rigid_shift()};
+      pair.master = moved_shape(*rigid, contact->rigid_shift(), scene.problem->accepted_time());
     else
       pair.master = std::get<std::string>(contact->pair().master);
+    if (const auto& friction = contact->pair().friction) pair.friction = friction->law;
     names.push_back(std::move(pair));
   }
   return names;

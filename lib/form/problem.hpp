@@ -38,6 +38,8 @@ class Problem {
   void commit(Vec unknowns);
   void roll_back();
   double time() const { return time_; }
+  /// Time of the last accepted state.
+  double accepted_time() const { return accepted_time_; }
 
   /// The state at `unknowns` (valid until the next call of any member). Collective.
   State state_at(Vec unknowns);
