@@ -17,7 +17,7 @@ struct LogStrain {
 };
 
 /// det F > 0. Small strains have all their digits: the spectrum is that of U² − 1. Of large ones ln λ has an error of
-/// 1e-15 max(1, λ_max)² / λ_min² or less. Where F^T F leaves the range of numbers the strain is not finite.
+/// up to 5e-15 max(1, λ_max)² / λ_min². Where F^T F leaves the range of numbers the strain is not finite.
 LogStrain log_strain(const Tensor& F);
 
 /// dT/dE of a stress that is isotropic but for one direction of flow n, |n| = 1, tr n = 0:

@@ -305,7 +305,7 @@ TEST_CASE("violent single increments are solved, and lie on the yield surface to
       REQUIRE(response.outcome == PointOutcome::Solved);
       if (material.kinematic || material.rate) continue;
       const Eigen::Vector3d stretch = Eigen::JacobiSVD<Tensor>(F).singularValues();
-      const double ratio = std::max(1.0, stretch[0]) / stretch[2], strain_error = 1e-15 * ratio * ratio;
+      const double ratio = std::max(1.0, stretch[0]) / stretch[2], strain_error = 5e-15 * ratio * ratio;
       const Stress<3> tau = stress_vector(response.piola * F.transpose());
       const double yield = yield_stress(material.hardening, point.p());
       CHECK(std::abs(von_mises({tau.data(), 6}) - yield) < 1e-12 * yield + 3 * G_of(material.elastic) * strain_error);
