@@ -44,21 +44,22 @@ std::optional<double> falling_root(const Function& function, double low, double 
 }
 
 /// A few roundings of the largest term.
-double tolerance(const FlowEquation& equation) { return 4e-16 * equation.q; }
+double tolerance(const FlowEquation& equation) { return 1e-15 * equation.q; }
 
 /// Above this Δp the stress would be below the yield stress that there was at the start.
 double largest_increment(const FlowEquation& equation) {
   return (equation.q - yield_stress(equation.hardening, equation.p)) / equation.stiffness;
 }
 
-/// Yield stresses that curve downwards make Newton's method from Δp = 0 converge from one side.
+/// Yield stresses that curve downwards make Newton's method from Δp = 0 converge from one side. The bracket ends at
+/// twice the largest increment because perfect plasticity has its root at that very place.
 std::optional<Flow> solve_without_rate(const FlowEquation& equation) {
   const auto overshoot = [&](double x) -> ValueSlope {
     const double p = equation.p + x;
     return {equation.q - equation.stiffness * x - yield_stress(equation.hardening, p),
             -equation.stiffness - hardening_slope(equation.hardening, p)};
   };
-  const auto x = falling_root(overshoot, 0, largest_increment(equation), 0, tolerance(equation));
+  const auto x = falling_root(overshoot, 0, 2 * largest_increment(equation), 0, tolerance(equation));
   if (!x) return std::nullopt;
   return Flow{*x, hardening_slope(equation.hardening, equation.p + *x), 0};
 }

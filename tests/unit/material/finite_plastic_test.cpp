@@ -215,7 +215,8 @@ TEST_CASE("energy balance of a path with large rotation: work of P = stored + di
       CHECK(point.p() > 0.1);
       return std::abs(balance - before.stored) / before.stored;
     };
-    CHECK(gap(1600) < 2e-3);
-    CHECK(gap(1600) < 0.6 * gap(800));
+    const double coarse = gap(800), fine = gap(1600);
+    CHECK(fine < (material.rate ? 2e-3 : 2e-4));
+    CHECK(fine < (material.rate ? 0.52 : 0.36) * coarse); // order 1, and nearly 2
   }
 }

@@ -91,8 +91,7 @@ TEST_CASE("cycles: stress = sign yield(p) + H_kin ep at every turning point of a
   }
 }
 
-TEST_CASE(
-    "energy balance of smooth three-dimensional paths: work = stored + dissipated, with error below first order") {
+TEST_CASE("energy balance of smooth three-dimensional paths: work = stored + dissipated as increments shrink") {
   for (const auto& [name, material] : sample_plastics()) {
     CAPTURE(name);
     const auto gap = [&](int n) {
@@ -112,9 +111,9 @@ TEST_CASE(
       CHECK(before.stored > 1e-3);
       return std::abs(balance - before.stored) / before.stored;
     };
-    CHECK(gap(1600) < 2e-3);
-    CHECK(gap(1600) < 0.6 * gap(800));
-    CHECK(gap(800) < 0.6 * gap(400));
+    const double coarse = gap(800), fine = gap(1600);
+    CHECK(fine < (material.rate ? 2e-3 : 2e-4));
+    CHECK(fine < (material.rate ? 0.52 : 0.36) * coarse); // order 1, and nearly 2
   }
 }
 
