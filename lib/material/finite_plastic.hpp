@@ -23,10 +23,11 @@ namespace amontons {
 /// H/3 sin γ: meant for Bauschinger effects at shears below about 1, not for large shear in one direction.
 ///
 /// State: p, F_p^-1 (nine, row by row), with kinematic hardening also ∫ D_p dt (six, engineering shears).
+///
 /// G. Weber, L. Anand, Comput. Methods Appl. Mech. Eng. 79 (1990) 173-202; A. L. Eterovic, K.-J. Bathe, Int. J. Numer.
 /// Methods Eng. 30 (1990) 1099-1114; J. C. Simo, Comput. Methods Appl. Mech. Eng. 99 (1992) 61-112; on shear with
 /// kinematic hardening: J. C. Nagtegaal, J. E. de Jong, Proc. Workshop Plasticity of Metals at Finite Strain, Stanford
-/// (1982) 65-106.
+/// (1982) 65-102.
 struct FinitePlastic {
   ElasticPlastic material;
   static constexpr std::array<std::string_view, 16> all_state_names{

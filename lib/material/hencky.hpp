@@ -7,10 +7,11 @@
 namespace amontons {
 
 /// W = λ/2 (ln J)² + G E : E,  E = ln U;  Kirchhoff stress τ = R (λ ln J 1 + 2 G E) R^T,  P = τ F^-T.
-/// What linear elasticity becomes at finite strain: true stress proportional to true strain; elastic part of
-/// FinitePlastic. Good up to stretches of about 0.7 to 1.4; uniaxially the force has its maximum at the stretch e^(1/(2
-/// nu)) or so, in pure shear at e. H. Hencky, Z. Tech. Phys. 9 (1928) 215-220; L. Anand, J. Appl. Mech. 46 (1979)
-/// 78-82.
+/// What linear elasticity becomes at finite strain, and the elastic part of FinitePlastic. Good between stretches of
+/// about 0.7 and 1.4: the force on a bar has a maximum at the stretch e, the stress in simple shear at γ = 3.02 (τ = 2
+/// G x / cosh x, x = asinh(γ / 2)).
+///
+/// H. Hencky, Z. Tech. Phys. 9 (1928) 215-220; L. Anand, J. Appl. Mech. 46 (1979) 78-82.
 struct Hencky {
   Elastic elastic{}; // E, nu
 

@@ -100,7 +100,7 @@ RadialReturn radial_return(const ElasticPlastic& material, const PointContext& c
   const double norm = relative.norm(), q = std::sqrt(1.5) * norm;
   RadialReturn result;
   result.moduli = {.bulk = bulk, .shear = 2 * G};
-  if (q > yield_stress(material.hardening, trial.p) * (1 + 1e-12)) {
+  if (q > yield_stress(material.hardening, trial.p) * (1 + 1e-12) + 3e-14 * G) {
     const double stiffness = 3 * G + H;
     const auto flow = solve(material, {material.hardening, q, stiffness, trial.p}, context.dt);
     result.is_converged = flow.has_value();

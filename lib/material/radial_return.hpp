@@ -31,9 +31,10 @@ struct RadialReturn {
 /// derivative of the right-hand side:
 ///   shear = 2 G (1 − 3 G Δp / q_trial),  drop = 2 G (3 G / (3 G + H_kin + h) − 3 G Δp / q_trial).
 /// Dissipated: ∫ σ_y dp + overstress Δp; work = stored + dissipated holds to second order in the increment without
-/// viscosity and to first order with it. An overshoot of yield below 1e-12 counts as elastic, lest rounding choose
-/// between elastic and plastic moduli at the start of an increment.
-/// J. C. Simo, T. J. R. Hughes, Computational Inelasticity (1998), boxes 3.1 and 3.2.
+/// viscosity and to first order with it. An overshoot of yield by rounding (1e-12 of it, or 1e-14 in strain) counts as
+/// elastic, lest chance decide between elastic and plastic moduli at the start of an increment.
+///
+/// J. C. Simo, T. J. R. Hughes, Computational Inelasticity (1998), ch. 3.
 RadialReturn radial_return(const ElasticPlastic& material, const PointContext& context, const Trial& trial);
 
 } // namespace amontons

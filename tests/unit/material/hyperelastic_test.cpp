@@ -71,6 +71,19 @@ TEST_CASE("Hencky: stress E ln(stretch) with lateral stretch^-nu; simple shear i
   }
 }
 
+TEST_CASE("Hencky: the shear stress has its maximum where x tanh x = 1, the force on a bar at the stretch e") {
+  const Hencky law{rubber};
+  const double x = 1.1996786402577339, gamma = 2 * std::sinh(x), e = std::exp(1.0);
+  REQUIRE(x * std::tanh(x) == Approx(1).epsilon(1e-14));
+  CHECK(std::abs(law.tangent(shear(gamma))(1, 1)) < 1e-13 * rubber.young);
+  // Without lateral stress: condense the two lateral stretches out of the tangent.
+  const double lateral = std::pow(e, -rubber.poisson);
+  const PiolaTangent A = law.tangent(diagonal(e, lateral, lateral));
+  const double condensed = A(0, 0) - 2 * A(0, 4) * A(4, 0) / (A(4, 4) + A(4, 8));
+  CHECK(std::abs(A(0, 0)) > 0.01 * rubber.young);
+  CHECK(std::abs(condensed) < 1e-13 * rubber.young);
+}
+
 TEST_CASE("neo-Hookean: simple shear keeps the volume and gives G gamma, with normal stress G gamma^2") {
   const NeoHookean law{rubber};
   const double G = G_of(rubber);
