@@ -3,6 +3,7 @@
 import math
 
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
 from figure_style import BLUE, INK, ORANGE, plt
 from study_analysis import median
@@ -30,19 +31,26 @@ def points(panel, outcomes, quantity, colour, marker, label):
                        label=label if certified else f"{label}, not certified")
 
 
+def plain_seconds(axis):
+    """Times on a logarithmic axis as 0.5, 1, 2, 5, ..."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(ScalarFormatter())
+    axis.set_minor_formatter(NullFormatter())
+
+
 def draw_front(panel, front, quantity):
     front = [outcome for outcome in front if outcome.errors[quantity.name] > 0.0]
     if not front:
         return
     x, y = [median(outcome.cpu) for outcome in front], [outcome.errors[quantity.name] for outcome in front]
     panel.plot(x, y, drawstyle="steps-post", color=INK, lw=0.9, zorder=1, label="Pareto front")
-    panel.plot(x, y, "o", ms=10, mfc="none", mec=INK, mew=0.8)
     # Below and left of the front there is nothing, so there is room for words; a gain of less than a tenth gets none.
     named = float("inf")
     for cost, error, outcome in zip(x, y, front):
         if error > 0.9 * named:
             continue
         named = error
+        panel.plot([cost], [error], "o", ms=10, mfc="none", mec=INK, mew=0.8)
         panel.annotate(setting_text(outcome.variant.knobs), (cost, error), (-7, -7), textcoords="offset points", ha="right",
                        va="top", fontsize=6.5)
 
@@ -68,6 +76,7 @@ def error_time_figure(study, outcomes):
         panel.set_yscale("log")
         low, high = panel.get_xlim()
         panel.set_xlim(low * (low / high)**0.35, high)
+        plain_seconds(panel.xaxis)
         panel.set_xlabel("CPU time in s, all ranks (median and range)")
         panel.set_ylabel("absolute error" if is_absolute(outcomes, quantity) else "relative error")
         panel.set_title(quantity.label)
@@ -106,6 +115,13 @@ def draw_lines(panel, places, found, curves):
     panel.set_yscale("log")
 
 
+def mark_failures(panel, places, knob, name, outcomes):
+    """A cross at the top for every variant of the sweep that has not come to its end."""
+    failed = [places[repr(outcome.variant.sweeps[name][knob])] for outcome in outcomes
+              if name in outcome.variant.sweeps and not outcome.solved]
+    panel.plot(failed, [0.96] * len(failed), "x", ms=6, color="#b03a48", transform=panel.get_xaxis_transform())
+
+
 def linear_iterations(outcome):
     """Iterations of the linear solver, where it has any to count: a direct one has as many as Newton."""
     counts = outcome.summary.get("linear_iterations"), outcome.summary.get("newton_iterations")
@@ -122,8 +138,9 @@ def knobs_figure(study, outcomes):
     names = [name for name in study.sweeps if groups(study, outcomes, name)][:MAX_PANELS]
     if not names:
         return None
-    figure, panels = plt.subplots(3, len(names), squeeze=False, layout="constrained", sharey="row",
-                                  figsize=(max(3.0 * len(names), 5.0), 8.0))
+    figure = plt.figure(figsize=(max(3.0 * len(names), 5.0), 8.4), layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=[16, 1])
+    panels = above.subplots(3, len(names), squeeze=False, sharey="row")
     with_error = [quantity for quantity in study.quantities if quantity.reference]
     errors = [(COLOURS[i % len(COLOURS)], lambda outcome, name=quantity.name: outcome.errors.get(name), None)
               for i, quantity in enumerate(with_error)]
@@ -132,19 +149,21 @@ def knobs_figure(study, outcomes):
             ("CPU time in s (median, range)", [(INK, lambda outcome: median(outcome.cpu),
                                                 lambda outcome: (min(outcome.cpu), max(outcome.cpu)))]),
             ("iterations of the run", [newton, (ORANGE, linear_iterations, None)])]
-    for column, name in zip(panels.T, names):
+    for i, name in enumerate(names):
         knob, found = main_knob(study.sweeps[name]), groups(study, outcomes, name)
-        for panel, (label, curves) in zip(column, rows):
-            draw_lines(panel, knob_axis(panel, knob, study.sweeps[name][knob]), found, curves)
-            if column is panels.T[0]:
-                panel.set_ylabel(label)
-        column[0].set_title(f"sweep '{name}'")
+        for panel, (label, curves) in zip(panels[:, i], rows):
+            places = knob_axis(panel, knob, study.sweeps[name][knob])
+            draw_lines(panel, places, found, curves)
+            mark_failures(panel, places, knob, name, outcomes)
+            panel.set_ylabel("" if i else label)
+        panels[0, i].set_title(f"sweep '{name}'")
         if len(found) > 1:
-            key(column[1], [(setting_text(others), {"color": INK, "ls": LINES[g % len(LINES)],
-                                                    "marker": MARKERS[g % len(MARKERS)], "ms": 3.5})
-                            for g, (others, _) in enumerate(found)], loc="upper right")
+            key(panels[1, i], [(setting_text(others), {"color": INK, "ls": LINES[g % len(LINES)],
+                                                       "marker": MARKERS[g % len(MARKERS)], "ms": 3.5})
+                               for g, (others, _) in enumerate(found)], loc="best")
+    plain_seconds(panels[1, 0].yaxis)
     key(panels[2, 0], [("Newton", {"color": newton[0]}), ("linear", {"color": ORANGE})], loc="upper left")
-    key(figure, [(f"error of {quantity.label}", {"color": curve[0]}) for quantity, curve in zip(with_error, errors)],
-        loc="outside lower center", ncols=4)
+    key(below, [(f"error of {quantity.label}", {"color": curve[0]}) for quantity, curve in zip(with_error, errors)]
+        + [("failed", {"color": "#b03a48", "marker": "x", "ls": ""})], loc="center", ncols=5)
     figure.suptitle(study.title)
     return figure

@@ -70,12 +70,12 @@ def descendants(pid):
 
 
 def resident_bytes(pids):
-    """Memory of processes that is their own (shared libraries left out)."""
+    """Resident memory of processes together, shared libraries counted for each, as runs count it in their summaries."""
     total = 0
     for pid in pids:
         try:
-            with open(f"/proc/{pid}/status", encoding="ascii", errors="replace") as file:
-                total += sum(1024 * int(line.split()[1]) for line in file if line.startswith(("RssAnon:", "RssShmem:")))
+            with open(f"/proc/{pid}/statm", encoding="ascii") as file:
+                total += int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
         except OSError:
             continue
     return total

@@ -153,7 +153,8 @@ def target_words(study, good, quantity):
     for target in TARGETS:
         winners.setdefault(cheapest(costs, errors, target), []).append(target)
     for i, targets in winners.items():
-        goal = " and ".join(map(percent, targets))
+        *before, last = map(percent, targets)
+        goal = (", ".join(before) + (" or " if i is None else " and ") if before else "") + last
         if i is None:
             i = min(range(len(good)), key=lambda j: errors[j])
             yield (f"no setting reaches {goal}; the best is {percent(errors[i])} with {setting_text(good[i].variant.knobs)} "
