@@ -54,6 +54,22 @@ def pair_words(pair):
     return f"{pair.get('name')}: {pair.get('slave')} (slave) on {master}, {short_value(enforce)}{integration}, {friction}"
 
 
+def scene_sentence(deck, found):
+    """What kind of scene this is, in one sentence."""
+    def counted(number, what):
+        return f"{number} {what}{'s' * (number != 1)}"
+
+    pairs, unknowns = found.get("contact", deck.get("contact") or []), sum(found.get("unknowns", {}).values())
+    parts = [SPACES.get(deck.get("space"), f"{found['dim']}D" if "dim" in found else "")]
+    parts += [counted(len(deck["bodies"]), "body").replace("bodys", "bodies")] if deck.get("bodies") else []
+    parts += [counted(len(pairs), "contact pair") + (" with friction" if found.get("effects", {}).get("friction") else
+                                                     " without friction")] if pairs else ["no contact"]
+    parts += [counted(unknowns, "unknown")] if unknowns else []
+    parts += [counted(len(deck["steps"]), "step")] if deck.get("steps") else []
+    words = ", ".join(part for part in parts if part)
+    return f"<p>{text(words[:1].upper() + words[1:])}.</p>"
+
+
 def scene(run):
     """The scene in words, from the deck and from the summary."""
     rows, found = [], run.summary.get("scene", {}) if run.summary else {}
@@ -80,7 +96,7 @@ def scene(run):
     off = [effect.replace("_", " ") for effect, used in found.get("effects", {}).items() if not used]
     if on or off:
         rows += [("effects on", ", ".join(on) or "none"), ("effects off", ", ".join(off) or "none")]
-    return table((), rows) if rows else ""
+    return scene_sentence(deck, found) + table((), rows) if rows else ""
 
 
 def pictures(run):

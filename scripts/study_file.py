@@ -50,9 +50,6 @@ class Study:
     quantities: list
     sweeps: dict
 
-    def quantity(self, name):
-        return next(quantity for quantity in self.quantities if quantity.name == name)
-
 
 def number(value):
     """A knob's value as a number, or None for words and tagged alternatives (YAML reads 1e-3 as a word)."""
@@ -77,10 +74,11 @@ def short_value(value):
 
 
 def short_name(path):
-    """The last key of a path, with what it belongs to where the last one alone says little."""
+    """The last key of a path; with the one before it where things of that name are many."""
     keys = [key for key in split_path(path) if isinstance(key, str)]
-    return " ".join(keys[-2:]) if keys[-1] in ("alpha", "order", "tolerance") and len(keys) > 1 and \
-        keys[-2] not in ("mesh",) else keys[-1]
+    if keys[-1] in ("alpha", "order", "tolerance") and keys[-2:-1] != ["mesh"]:
+        return " ".join(keys[-2:])
+    return keys[-1]
 
 
 def setting_text(knobs):

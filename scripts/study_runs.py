@@ -241,6 +241,10 @@ class Runs:
         places = [self.place(variant, deck_folder) for variant in variants]
         kept = {id(variant): self.records(place) for variant, place in zip(variants, places)}
         missing = [(variant, repetition) for variant, repetition in order if repetition not in kept[id(variant)]]
+        others = {path for path in (self.folder / "variants").glob("*") if path not in places}
+        if others:
+            say(f"{len(others)} folders in {self.folder / 'variants'} are of other decks, meshes or builds of the program, and "
+                "are left alone")
         if len(missing) < len(order):
             say(f"{len(order) - len(missing)} of {len(order)} runs are there from before")
         for at, (variant, repetition) in enumerate(missing, 1):
