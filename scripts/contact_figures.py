@@ -1,5 +1,5 @@
-"""Pictures of the contact surface, along it (2D) or as a map (3D): the pressure, and with friction the tangential traction
-next to its bound."""
+"""Pictures of the contact surface, along it (2D) or as a map (3D): the pressure, and with friction the tangential
+traction next to its bound."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Closed forms in study files: arithmetic on numbers, names and a few functions, written as in a deck (`^` is power)."""
+"""Closed forms in study files: arithmetic on numbers, names and some functions, written as in a deck (`^` is power)."""
 
 import ast
 import operator

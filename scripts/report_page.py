@@ -1,4 +1,4 @@
-"""Pieces of a page that needs nothing but itself: escaped text, tables, bars, inline pictures, style for screen and paper."""
+"""Pieces of a page that needs nothing but itself: text, tables, bars, inline pictures, style for screen and paper."""
 
 import base64
 import html
@@ -22,7 +22,8 @@ td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; wh
        print-color-adjust: exact; }
 figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; }
 figcaption { color: var(--soft); font-size: .88rem; }
-pre { font-size: .8rem; line-height: 1.35; background: #f5f7f9; padding: .7rem; overflow-x: auto; white-space: pre-wrap; }
+pre { font-size: .8rem; line-height: 1.35; background: #f5f7f9; padding: .7rem; overflow-x: auto;
+      white-space: pre-wrap; }
 code { font-size: .92em; background: #f5f7f9; }
 @page { size: A4; margin: 16mm 14mm; }
 @media print {

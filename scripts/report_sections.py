@@ -25,10 +25,11 @@ def outcome(run):
     if summary:
         good = summary.get("status") == 0
         resources = summary.get("resources", {})
-        parts.append(f"<p><span class='outcome {'good' if good else 'bad'}'>{text(summary.get('outcome', 'ended'))}</span> "
-                     f"<span class=soft>(exit status {text(summary.get('status'))}), {text(summary.get('increments', '?'))} "
-                     f"increments to t = {text(summary.get('time', '?'))}, {text(summary.get('newton_iterations', '?'))} "
-                     f"Newton iterations, {text(summary.get('ranks', '?'))} ranks, "
+        known = {key: text(summary.get(key, "?")) for key in ("outcome", "status", "increments", "time", "ranks",
+                                                              "newton_iterations")}
+        parts.append(f"<p><span class='outcome {'good' if good else 'bad'}'>{known['outcome']}</span> <span class=soft>"
+                     f"(exit status {known['status']}), {known['increments']} increments to t = {known['time']}, "
+                     f"{known['newton_iterations']} Newton iterations, {known['ranks']} ranks, "
                      f"{text(round(resources.get('wall_seconds', 0.0), 2))} s</span></p>")
     return "".join(parts + [note(fault) for fault in run.faults])
 
@@ -51,7 +52,8 @@ def pair_words(pair):
     master = master if isinstance(master, str) else f"a rigid {short_value(master).split('(')[0]}"
     friction = f"friction {short_value(pair['friction'])}" if "friction" in pair else "no friction"
     integration = f", integration {short_value(pair['integration'])}" if "integration" in pair else ""
-    return f"{pair.get('name')}: {pair.get('slave')} (slave) on {master}, {short_value(enforce)}{integration}, {friction}"
+    return (f"{pair.get('name')}: {pair.get('slave')} (slave) on {master}, {short_value(enforce)}{integration}, "
+            f"{friction}")
 
 
 def scene_sentence(deck, found):
@@ -118,13 +120,13 @@ def certificate(run):
     rows = []
     for name, item in found.get("items", {}).items():
         good = item.get("passed")
-        rows.append((name.replace("_", " "), item.get("worst"), item.get("tolerance"),
-                     (f"<span class={'good' if good else 'bad'}>{'holds' if good else 'FAILS'}</span>",), item.get("time"),
+        verdict = f"<span class={'good' if good else 'bad'}>{'holds' if good else 'FAILS'}</span>"
+        rows.append((name.replace("_", " "), item.get("worst"), item.get("tolerance"), (verdict,), item.get("time"),
                      item.get("where")))
     words = "holds in every accepted increment" if found.get("passed") else \
         f"fails in {found.get('failed_increments', '?')} increments"
-    return (f"<p>Checked after every accepted increment by a search that shares no code with the solver but the geometry. The "
-            f"certificate {text(words)}. Worst values over the run:</p>"
+    return (f"<p>Checked after every accepted increment by a search that shares no code with the solver but the "
+            f"geometry. The certificate {text(words)}. Worst values over the run:</p>"
             + table(("check", "worst", "tolerance", "", "at t", "where"), rows))
 
 
@@ -198,7 +200,7 @@ def study(folder):
     for name in ("words.md", "effects.md"):
         if (folder / name).is_file():
             parts.append(markdown((folder / name).read_text(encoding="utf-8")))
-    for name, caption in (("error_time.png", "Error against CPU time; the line joins settings that no other one beats."),
+    for name, caption in (("error_time.png", "Error against CPU time; the line joins settings that no other beats."),
                           ("knobs.png", "Errors, CPU time and iterations over the knob of each sweep.")):
         if (folder / name).is_file():
             parts.append(picture_of((folder / name).read_bytes(), caption))

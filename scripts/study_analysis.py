@@ -1,4 +1,4 @@
-"""The arithmetic of studies: medians, power laws, Richardson's extrapolation, Pareto fronts. Pure functions of numbers."""
+"""The arithmetic of studies: medians, power laws, Richardson's extrapolation, Pareto fronts. Pure functions."""
 
 import math
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ def spread(values):
 
 @dataclass
 class Power:
-    """y = c x^exponent fitted to `count` points; `deviation` is the standard error of the exponent, `fit` the share of the
-    variance of log y that the law explains (1: all), `last` the exponent between the two points of largest cost."""
+    """y = c x^exponent fitted to `count` points; `deviation` is the standard error of the exponent, `fit` the share of
+    the variance of log y that the law explains (1: all), `last` the exponent between the last two points."""
     exponent: float
     deviation: float
     fit: float
@@ -54,8 +54,8 @@ def extrapolate(sizes, values):
     """The limit of q(s) = q + c s^p for s -> 0 through the three finest of `sizes` (given from coarse to fine).
 
     Returns (limit, uncertainty, p): the uncertainty is what the extrapolation has added to the finest value. Where the
-    three do not lie on such a curve with p between 0.2 and 8 (they oscillate, or do not converge), the finest value itself
-    is returned, with the last change as uncertainty and p = None.
+    three do not lie on such a curve with p between 0.2 and 8 (they oscillate, or do not converge), the finest value
+    itself is returned, with the last change as uncertainty and p = None.
     Source: L. F. Richardson, Phil. Trans. R. Soc. A 210 (1911); for ratios that differ, P. J. Roache, Verification and
     Validation in Computational Science and Engineering (1998), 5.
     """

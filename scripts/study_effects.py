@@ -65,11 +65,12 @@ def effects_words(study, names, outcomes):
         return "The deck has no effect that could be switched off.\n"
     # The value of a profile is an error, not something that an effect changes.
     quantities = [quantity for quantity in study.quantities if quantity.source[0] != "profile"]
+    values = [f"{base.values[q.name]:.4g}" if q.name in base.values else "–" for q in quantities]
     lines = ["| switched off | CPU time | memory | unknowns | " + " | ".join(q.label for q in quantities) + " |",
              "|---" * (4 + len(quantities)) + "|",
-             f"| nothing | {median(base.cpu):.3g} s ± {percent(0.5 * spread(base.cpu))} | {median(base.memory) / 1e6:.0f} MB "
-             f"| {base.unknowns} | " + " | ".join(f"{base.values[q.name]:.4g}" if q.name in base.values else "–"
-                                                  for q in quantities) + " |"]
+             f"| nothing | {median(base.cpu):.3g} s ± {percent(0.5 * spread(base.cpu))} | "
+             f"{median(base.memory) / 1e6:.0f} MB | {base.unknowns} | "
+             + " | ".join(values) + " |"]
     for name, outcome in list(zip(names, outcomes))[1:]:
         if not outcome.solved:
             lines.append(f"| {name[8:]} | {outcome.word} |" + " |" * (2 + len(quantities)))
@@ -79,5 +80,5 @@ def effects_words(study, names, outcomes):
             f"{median(outcome.memory) / 1e6:.0f} MB ({change(median(outcome.memory), median(base.memory))}) | "
             f"{outcome.unknowns} | " + " | ".join(change(outcome.values.get(q.name), base.values.get(q.name))
                                                   for q in quantities) + " |")
-    return (f"Effects of `{study.deck_path.name}` switched off one at a time; changes are relative to the deck as it is, "
-            f"times are medians of {len(base.cpu)} runs.\n\n" + "\n".join(lines) + "\n")
+    return (f"Effects of `{study.deck_path.name}` switched off one at a time; changes are relative to the deck as it "
+            f"is, times are medians of {len(base.cpu)} runs.\n\n" + "\n".join(lines) + "\n")

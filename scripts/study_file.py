@@ -27,8 +27,8 @@ class Quantity:
 
 @dataclass
 class Variant:
-    """One deck to run. `knobs` is what sweeps set in it, path -> value; `sweeps` the sweeps that it belongs to, each with
-    the values of that sweep's knobs."""
+    """One deck to run. `knobs` is what sweeps set in it, path -> value; `sweeps` the sweeps that it belongs to, each
+    with the values of that sweep's knobs."""
     deck: dict
     ranks: int
     knobs: dict
@@ -115,8 +115,8 @@ class Reader:
 def read_quantity(reader, name, content, sweeps):
     where = f"quantities.{name}"
     if not re.fullmatch(r"[A-Za-z_]\w*", name) or name in PLACES | {"pi"}:
-        raise reader.fail(f"'{where}': names of quantities are words of letters, digits and _ that expressions can use, "
-                          "and not x, y, z or pi.")
+        raise reader.fail(f"'{where}': names of quantities are words of letters, digits and _ that expressions can "
+                          "use, and not x, y, z or pi.")
     sources = ("summary", "history", "expression", "profile")
     reader.only(where, content, (*sources, "label", "reference", "scale"))
     given = [kind for kind in sources if kind in content]
@@ -144,7 +144,8 @@ def read_quantity(reader, name, content, sweeps):
 def read_reference(reader, where, kind, content, sweeps):
     if content is None:
         if kind == "profile":
-            raise reader.fail(f"'{where}' is a profile and needs `reference: {{exact: ...}}`: its value is the L2 error.")
+            raise reader.fail(f"'{where}' is a profile, whose value is the L2 error: it needs `reference: "
+                              "{exact: EXPRESSION}`.")
         return None
     reader.only(where + ".reference", content, ("exact", "finest"))
     if len(content) != 1:
@@ -161,8 +162,8 @@ def read_reference(reader, where, kind, content, sweeps):
     values = [number(value) for value in sweeps[argument][varied[0]]] if len(varied) == 1 else []
     if len(values) < 3 or None in values or min(values) <= 0 or \
             not (sorted(values) == values or sorted(values, reverse=True) == values):
-        raise reader.fail(f"'{where}.reference.finest': the sweep '{argument}' must vary one knob only, with three or more "
-                          "positive numbers from coarse to fine.")
+        raise reader.fail(f"'{where}.reference.finest': the sweep '{argument}' must vary one knob only, with three or "
+                          "more positive numbers from coarse to fine.")
     return "finest", argument
 
 
@@ -193,8 +194,9 @@ def vary(reader, deck, schema, sweep, knobs):
             set_value(varied, schema, path, value)
     for path, value in knobs.items():
         if path != "ranks" and get_value(varied, path) != value:
-            raise reader.fail(f"the sweep '{sweep}' contradicts itself: '{path}' cannot be {short_value(value)} together with "
-                              f"{setting_text({other: item for other, item in knobs.items() if other != path})}.")
+            others = setting_text({other: item for other, item in knobs.items() if other != path})
+            raise reader.fail(f"the sweep '{sweep}' contradicts itself: '{path}' cannot be {short_value(value)} "
+                              f"together with {others}.")
     return varied
 
 
@@ -265,7 +267,8 @@ def read_study(path, schema):
     reader.only("constants", constants, tuple(constants) if isinstance(constants, dict) else ())
     check_names(reader, constants, quantities)
     limit = content.get("memory_limit")
-    return Study(path=path, title=str(content.get("title", f"Study of {deck_path.name}")), deck_path=deck_path, deck=deck,
+    title = str(content.get("title", f"Study of {deck_path.name}"))
+    return Study(path=path, title=title, deck_path=deck_path, deck=deck,
                  ranks=reader.at_least(content, "ranks", 1, 1, True),
                  repetitions=reader.at_least(content, "repetitions", 3, 1, True),
                  seed=reader.at_least(content, "seed", 1, 0, True),

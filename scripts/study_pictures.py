@@ -51,8 +51,8 @@ def draw_front(panel, front, quantity):
             continue
         named = error
         panel.plot([cost], [error], "o", ms=10, mfc="none", mec=INK, mew=0.8)
-        panel.annotate(setting_text(outcome.variant.knobs), (cost, error), (-7, -7), textcoords="offset points", ha="right",
-                       va="top", fontsize=6.5)
+        panel.annotate(setting_text(outcome.variant.knobs), (cost, error), (-7, -7), textcoords="offset points",
+                       ha="right", va="top", fontsize=6.5)
 
 
 def error_time_figure(study, outcomes):

@@ -72,8 +72,8 @@ def on_facets(places, elements, values):
         edges = np.einsum("qdn,enc->eqdc", slopes, places[nodes])
         area = np.linalg.norm(edges[:, :, 0], axis=2) if edges.shape[2] == 1 else \
             np.linalg.norm(np.cross(edges[:, :, 0], edges[:, :, 1]), axis=2)
-        found.append(((np.einsum("qn,enc->eqc", shape, places[nodes])).reshape(-1, 3), (values[nodes] @ shape.T).ravel(),
-                      (area * weight).ravel()))
+        spots = np.einsum("qn,enc->eqc", shape, places[nodes])
+        found.append((spots.reshape(-1, 3), (values[nodes] @ shape.T).ravel(), (area * weight).ravel()))
     return tuple(np.concatenate(parts) for parts in zip(*found))
 
 
@@ -191,7 +191,8 @@ def compare_with_finest(study, outcomes):
 def read_outcome(study, variant, place, records):
     """All that is known of a variant after its runs."""
     last = records[max(records)] if records else {"outcome": "not run", "message": ""}
-    worst = next((record for record in records.values() if record["outcome"] not in ("certified", "not certified")), last)
+    failed = [record for record in records.values() if record["outcome"] not in ("certified", "not certified")]
+    worst = failed[0] if failed else last
     outcome = Outcome(variant, worst["outcome"], worst["message"])
     for record in records.values():
         outcome.wall.append(record["wall_seconds"])

@@ -1,7 +1,7 @@
 """Runs the variants of a study, each as a process of its own, and keeps a record of every finished run.
 
-Folder of a study: variants/ID/{deck.yaml, run_1.json, run_2.json, ..., results/}. A record is written, whole, only when its
-run has come to an end, so an interrupted study goes on with what is missing; `results` are those of the first run.
+Folder of a study: variants/ID/{deck.yaml, run_1.json, run_2.json, ..., results/}. A record is written, whole, only when
+its run has come to an end, so an interrupted study goes on with what is missing; `results` are those of the first run.
 """
 
 import copy
@@ -52,8 +52,8 @@ def read_schema(program):
         done = subprocess.run([program, "schema"], capture_output=True, text=True, env=mpi_environment(), check=False)
         return json.loads(done.stdout)
     except (OSError, ValueError) as error:
-        raise StudyError(f"the program {program} cannot be run ({error}). Build it (scripts/demo does) or name another one "
-                         "with --program.") from error
+        raise StudyError(f"the program {program} cannot be run ({error}). Build it (scripts/demo does) or name another "
+                         "one with --program.") from error
 
 
 def descendants(pid):
@@ -170,7 +170,7 @@ class Runs:
         (place / "checked").touch()
 
     def attempt(self, variant, folder):
-        """One run of the deck in `folder`; returns its exit status (None: ended by us), the reason, and wall seconds."""
+        """One run in `folder`; returns its exit status (None: ended by us), outcome, message and wall seconds."""
         limit = 1e6 * self.memory_limit if self.memory_limit else 0.8 * available_bytes()
         command = [*self.mpirun, "-n", str(variant.ranks), self.program, str(folder.parent / "deck.yaml"), "--out",
                    str(folder / "results")]
@@ -243,8 +243,8 @@ class Runs:
         missing = [(variant, repetition) for variant, repetition in order if repetition not in kept[id(variant)]]
         others = {path for path in (self.folder / "variants").glob("*") if path not in places}
         if others:
-            say(f"{len(others)} folders in {self.folder / 'variants'} are of other decks, meshes or builds of the program, and "
-                "are left alone")
+            say(f"{len(others)} folders in {self.folder / 'variants'} are of other decks, meshes or builds of the "
+                "program, and are left alone")
         if len(missing) < len(order):
             say(f"{len(order) - len(missing)} of {len(order)} runs are there from before")
         for at, (variant, repetition) in enumerate(missing, 1):

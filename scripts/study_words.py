@@ -27,8 +27,8 @@ def main_knob(sweep):
 
 
 def groups(study, outcomes, name):
-    """The solved variants of a sweep, apart for the values of all knobs but the main one, in the order of the main knob's
-    values: (others, [(value, outcome)])."""
+    """The solved variants of a sweep, apart for the values of all knobs but the main one, in the order of the main
+    knob's values: (others, [(value, outcome)])."""
     sweep, found = study.sweeps[name], []
     knob = main_knob(sweep)
     for outcome in outcomes:
@@ -138,7 +138,8 @@ def cheapest_words(study, outcomes, quantity, finest):
     good = comparable(outcomes, quantity)
     if not good:
         reasons = {outcome.missing.get(quantity.name) for outcome in outcomes if outcome.solved} - {None}
-        return f"**{quantity.label}**: no certified run gives it" + (f" ({'; '.join(sorted(reasons))})." if reasons else ".")
+        why = f" ({'; '.join(sorted(reasons))})" if reasons else ""
+        return f"**{quantity.label}**: no certified run gives it{why}."
     if is_absolute(good, quantity):
         best = min(good, key=lambda outcome: outcome.errors[quantity.name])
         return (f"**{quantity.label}** ({kind}): the reference is zero, so the error is absolute; the smallest is "
@@ -157,14 +158,14 @@ def target_words(study, good, quantity):
         goal = (", ".join(before) + (" or " if i is None else " and ") if before else "") + last
         if i is None:
             i = min(range(len(good)), key=lambda j: errors[j])
-            yield (f"no setting reaches {goal}; the best is {percent(errors[i])} with {setting_text(good[i].variant.knobs)} "
-                   f"({cost_text(good[i])})")
+            yield (f"no setting reaches {goal}; the best is {percent(errors[i])} with "
+                   f"{setting_text(good[i].variant.knobs)} ({cost_text(good[i])})")
             continue
         worse = dearer_and_worse(study, good, good[i], quantity, targets[-1])
         yield (f"{goal} cost{'s' * (len(targets) == 1)} least with {setting_text(good[i].variant.knobs)} "
                f"({percent(errors[i])}, {cost_text(good[i])})"
-               + (f" – by chance or at a price: {setting_text(worse.variant.knobs)} in the same sweep costs more and is off by "
-                  f"{percent(worse.errors[quantity.name])}" if worse else ""))
+               + (f" – by chance or at a price: {setting_text(worse.variant.knobs)} in the same sweep costs more and is off "
+                  f"by {percent(worse.errors[quantity.name])}" if worse else ""))
 
 
 def dearer_and_worse(study, outcomes, chosen, quantity, target):
@@ -209,7 +210,7 @@ def failure_words(outcomes):
     if not failed:
         return ""
     return "Not in the comparison: " + "; ".join(
-        f"{setting_text(outcome.variant.knobs)} ({outcome.word}{': ' + outcome.message[:120] if outcome.message else ''})"
+        f"{setting_text(outcome.variant.knobs)} ({': '.join(filter(None, (outcome.word, outcome.message[:120])))})"
         for outcome in failed) + "."
 
 
@@ -219,12 +220,14 @@ def paragraph(study, outcomes, rates, finest):
     spreads = sorted(spread(outcome.cpu) for outcome in outcomes if len(outcome.cpu) > 1)
     loads = [load for outcome in outcomes for load in outcome.load]
     repetitions = max((len(outcome.wall) for outcome in outcomes), default=0)
-    sentences = [f"{len(outcomes)} variants of `{study.deck_path.name}`, {runs} runs in random order (seed {study.seed}). "
-                 f"Cost is CPU time summed over ranks, the median of {repetitions} run{'s' * (repetitions != 1)}"
+    sentences = [f"{len(outcomes)} variants of `{study.deck_path.name}`, {runs} runs in random order "
+                 f"(seed {study.seed}). Cost is CPU time summed over ranks, the median of {repetitions} "
+                 f"run{'s' * (repetitions != 1)}"
                  + (f"; between repetitions it spreads by {percent(median(spreads))} (median over variants; largest "
                     f"{percent(spreads[-1])})" if spreads else "")
                  + (f"; load average of the machine {min(loads):.1f} to {max(loads):.1f}." if loads else ".")]
-    sentences += [cheapest_words(study, outcomes, quantity, finest) for quantity in study.quantities if quantity.reference]
+    with_reference = [quantity for quantity in study.quantities if quantity.reference]
+    sentences += [cheapest_words(study, outcomes, quantity, finest) for quantity in with_reference]
     sentences += [text for text in (rate_words(study, rates), failure_words(outcomes)) if text]
     return "\n\n".join(sentences) + "\n"
 
