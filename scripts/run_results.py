@@ -84,6 +84,16 @@ class Fields:
         group = self.step[path]
         return np.asarray(group["places"]), *(array(group, name) for name in ("pressure", "status", "gap", "normal"))
 
+    def friction(self, pair):
+        """Places, status, tangential traction (vectors) and its bound tau_c at the quadrature points of a pair; None
+        without friction."""
+        path = f"points/{pair}"
+        if path not in self.step or "shear" not in self.step[path]:
+            return None
+        group = self.step[path]
+        shear = np.asarray(group["shear"])
+        return np.asarray(group["places"]), np.ravel(group["status"]), shear, np.ravel(group["tau_c"])
+
 
 def read_history(path):
     with open(path, newline="", encoding="utf-8") as file:
