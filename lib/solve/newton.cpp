@@ -80,6 +80,9 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   AMT_PETSC(SNESSetFunction(snes_, residual_, evaluate_residual, this));
   AMT_PETSC(SNESSetJacobian(snes_, matrix_, matrix_, evaluate_tangent, this));
   AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
+  // PETSc takes a line search that gave up for convergence when its last step is shorter than stol |u|: any residual
+  // would pass where the residual has a minimum that is not zero.
+  AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
   if (problem.layout().num_extra() == 0) set_near_null_space();
 }
