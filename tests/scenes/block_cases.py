@@ -1,0 +1,167 @@
+"""Blocks in simple shear on frictional surfaces against closed forms and ordinary differential equations.
+
+A block of height H whose sides carry the complementary shear is a spring of stiffness k = G / H per area, exactly, with any mesh.
+"""
+import numpy as np
+
+import references
+
+
+def friction_coefficient(history, pair):
+    """|shear force| / normal force, by increment; 2D, contact from below."""
+    return np.abs(history[f"contact_{pair}_force_x"]) / history[f"contact_{pair}_force_y"]
+
+
+# --- rate_and_state_slider --------------------------------------------------------------------------------------------
+
+MU, L, V0, PRESSURE, HEIGHT = 0.6, 2e-3, 1e-3, 10.0, 10.0
+V1, V2 = 1e-3, 1e-2
+
+
+def law(a, b, evolution):
+    return {"mu": MU, "a": a, "b": b, "L": L, "v0": V0, "evolution": evolution}
+
+
+def velocity_step(bench):
+    """Friction against the slider's ODE; a and b as a laboratory reads them off, against those of the law."""
+    a, b, young = 0.016, 0.012, 70e3
+    stiffness = young / 2.0 / HEIGHT
+    for evolution in ("ageing", "slip"):
+        history = bench.run(
+            "rate_and_state_slider", {"contact.0.friction.rate_and_state": law(a, b, evolution)}
+        ).history
+        after = history["time"] > 21.0
+        time, found = history["time"][after], friction_coefficient(history, "surface")[after]
+        before = friction_coefficient(history, "surface")[~after][-1]
+        bench.close(f"{evolution}: steady friction at V1", before, MU + (a - b) * np.log(V1 / V0), 1e-4)
+        exact = references.slider_after_step(
+            time - 21.0, V1, V2, {"mu": MU, "a": a, "b": b, "L": L, "v0": V0}, stiffness / PRESSURE, evolution
+        )
+        jump = a * np.log(V2 / V1)
+        bench.below(f"{evolution}: largest difference from the ODE / direct jump", np.abs(found - exact).max() / jump, 0.02)
+        direct, evolved = found.max() - before, found.max() - found[-1]
+        bench.close(f"{evolution}: direct effect, peak / ln(V2/V1)", direct, exact.max() - before, 0.02)
+        bench.close(f"{evolution}: evolution effect, fall from the peak / ln(V2/V1)", evolved, exact.max() - exact[-1], 0.02)
+        bench.close(f"{evolution}: a - b", (found[-1] - before) / np.log(V2 / V1), a - b, 0.01)
+
+
+def soft_slider(bench, ratio, steps, v2):
+    """A run with stiffness `ratio` times the critical one, the steady traction in place from the start (F0 = mu p / k)."""
+    a, b = 0.008, 0.012
+    stiffness = ratio * (b - a) * PRESSURE / L
+    young = 2.0 * HEIGHT * stiffness
+    return bench.run(
+        "rate_and_state_slider",
+        {
+            "constants": {"E": young, "p": PRESSURE, "V1": V1, "V2": v2, "F0": MU * PRESSURE / stiffness},
+            "materials.rock.elastic.E": young,
+            "contact.0.friction.rate_and_state": law(a, b, "slip"),
+            "steps": steps,
+        },
+    ).history
+
+
+def growth_of_oscillation(values):
+    """ln |lambda| per increment of x[n+1] = trace x[n] - det x[n-1] with |lambda|^2 = det, by least squares."""
+    matrix = np.stack([values[1:-1], -values[:-2]], axis=1)
+    (_, det), *_ = np.linalg.lstsq(matrix, values[2:], rcond=None)
+    return 0.5 * np.log(det)
+
+
+def critical_stiffness(bench):
+    """A rate step of 0.1 % decays above k_c = (b - a) p / L and grows below.
+
+    The slip rate is constant in an increment and the state its exact solution, so with x = ln(v/V), h = V dt / L, kappa = k L / p
+    and E = e^-h the linearized increments are
+        (a - b (1 - E) + kappa h) x' = a x + b (1 - E) theta,   theta' = E theta - (1 - E) x'
+    with determinant a E / (a - b (1 - E) + kappa h) = |lambda|^2: the border is kappa = (b - a)(1 - E) / h, which becomes k_c
+    as h does 0. (A. Ruina 1983 for the continuous slider.)
+    """
+    a, b, dt = 0.008, 0.012, 0.1
+    v2 = 1.001 * V1
+    h = v2 * dt / L
+    left = np.exp(-h)
+    steps = [
+        {"name": "press", "to": 1},
+        {"name": "steady", "to": 21, "increments": 2},
+        {"name": "perturbed", "to": 46, "increments": 250},
+    ]
+    growth = {}
+    for ratio in (0.9, 1.1):
+        history = soft_slider(bench, ratio, steps, v2)
+        found = friction_coefficient(history, "surface")[3:] - (MU + (a - b) * np.log(v2 / V0))
+        growth[ratio] = growth_of_oscillation(found)
+        exact = 0.5 * np.log(a * left / (a - b * (1.0 - left) + ratio * (b - a) * h))
+        bench.close(f"k/k_c = {ratio}: growth per increment", growth[ratio], exact, 0.02)
+    bench.below("growth above the border", growth[1.1], 0.0)
+    bench.below("decay below it", -growth[0.9], 0.0)
+    border = 0.9 + 0.2 * growth[0.9] / (growth[0.9] - growth[1.1])
+    bench.close("border found / k_c, against that of increments of this length", border, (1.0 - left) / h, 0.005)
+    bench.close("border found / k_c", border, 1.0, 0.03)
+
+
+def stick_slip(bench):
+    """Half the critical stiffness: stick-slip; twice: steady sliding after a rate step of 50 %."""
+    a, b, dt = 0.008, 0.012, 0.5
+    v2 = 1.5 * V1
+    steps = [
+        {"name": "press", "to": 1},
+        {"name": "steady", "to": 21, "increments": 2},
+        {"name": "slide", "to": 141, "increments": 240},
+    ]
+    history = soft_slider(bench, 2.0, steps, v2)
+    found = friction_coefficient(history, "surface")
+    steady = MU + (a - b) * np.log(v2 / V0)
+    bench.below("k = 2 k_c: distance from steady sliding at the end", abs(found[-1] - steady), 1e-6)
+
+    history = soft_slider(bench, 0.5, steps, v2)
+    found, time = friction_coefficient(history, "surface")[3:], history["time"][3:]
+    stiffness = 0.5 * (b - a) / L  # over the pressure
+    slip = v2 * dt - np.diff(found) / stiffness  # what the spring gives up and is fed
+    events = np.flatnonzero(slip > 5.0 * L)
+    bench.below("k = k_c/2: five slip events or more; their number", -len(events), -5)
+    # An event fills one increment and ends on the steady line of the law at the rate slip / dt.
+    lands = MU + (a - b) * np.log(slip[events] / dt / V0)
+    bench.below("events end on the steady line", np.abs(found[events + 1] - lands).max(), 1e-4)
+    bench.below("smallest slip rate between events / rate of pulling", slip[events[1] : events[2]].min() / (v2 * dt), 0.2)
+    periods = np.diff(time[events])[1:]
+    bench.below("spread of the periods in increments", np.ptp(periods) / dt, 1.0)
+
+
+# --- prakash_clifton_step ---------------------------------------------------------------------------------------------
+
+
+def pressure_step(bench):
+    """tau = mu p2 - mu (p2 - p1) exp(-s/L) from the step on, s the slip; the block's own shear takes V t - s = tau / k."""
+    mu, length, p1, p2, rate = 0.6, 0.1, 10.0, 12.0, 1.0
+    young, height, cell, alpha = 70e3, 10.0, 5.0, 30.0
+    for name in ("semismooth", "uzawa", "penalty"):
+        changes = {"contact.0.enforce": {name: {}}}
+        compliance = 2.0 * height / young
+        if name == "penalty":  # whose springs, alpha E / h, let the block sink and lag
+            changes["contact.0.enforce"] = {name: {"alpha": alpha}}
+            changes["boundary.1.displacement.y"] = (
+                f"-(p1*min(t,1) + (p2-p1)*min(max(t-3,0)/tiny,1))*(y + {cell / alpha})/E"
+            )
+            compliance += cell / (alpha * young)
+        history = bench.run("prakash_clifton_step", changes).history
+        time = history["time"]
+        shear = np.abs(history["contact_surface_force_x"]) / 20.0
+        pressure = history["contact_surface_force_y"] / 20.0
+        before, after = np.flatnonzero(time <= 3.0)[-1], time > 3.0
+        bench.close(f"{name}: steady shear before the step", shear[before], mu * p1, 1e-9)
+        bench.close(f"{name}: pressure after it", pressure[before + 1], p2, 1e-9)
+        bench.below(f"{name}: jump of the shear with the pressure / mu (p2 - p1)", abs(shear[before + 1] / (mu * p1) - 1.0), 1e-4)
+        slip = rate * (time[after] - 3.0) - (shear[after] - shear[before]) * compliance
+        exact = mu * p2 - mu * (p2 - p1) * np.exp(-slip / length)
+        bench.below(f"{name}: largest distance from exp(-s/L) / mu (p2 - p1)", np.abs(shear[after] - exact).max() / (mu * (p2 - p1)), 0.01)
+
+
+CASES = {
+    "prakash_clifton_step": {"reference": pressure_step},
+    "rate_and_state_slider": {
+        "velocity_step": velocity_step,
+        "critical_stiffness": critical_stiffness,
+        "stick_slip": stick_slip,
+    }
+}
