@@ -157,7 +157,64 @@ def pressure_step(bench):
         bench.below(f"{name}: largest distance from exp(-s/L) / mu (p2 - p1)", np.abs(shear[after] - exact).max() / (mu * (p2 - p1)), 0.01)
 
 
+# --- slip_weakening_fault ---------------------------------------------------------------------------------------------
+
+MU_S, MU_K = 0.7, 0.5
+
+
+def weakening_run(bench, critical_slip, enforce, increments, linesearch):
+    """The fault's shear, slip and dissipation by increment from the end of pressing on."""
+    stiffness, width, rate = 150.0, 100.0, MU_S * PRESSURE / 150.0
+    history = bench.run(
+        "slip_weakening_fault",
+        {
+            "contact.0.friction.slip_weakening.D_c": critical_slip,
+            "contact.0.enforce": enforce,
+            "steps.2.increments": increments,
+            "petsc": {"snes_linesearch_type": linesearch},
+        },
+    ).history
+    shear = np.abs(history["contact_fault_force_x"]) / width
+    slip = rate * np.maximum(0.0, history["time"] - 1.0) - shear / stiffness
+    bench.close("pressure", history["contact_fault_force_y"][-1] / width, PRESSURE, 1e-9)
+    return history, shear, slip, history["energy_dissipated"] / width
+
+
+def weakening(bench):
+    """tau = p (mu_s - (mu_s - mu_k) min(D/D_c, 1)) all the way, its peak and residual, and the work that it takes."""
+    critical_slip = 0.02
+    for name in ("semismooth", "uzawa"):
+        enforce = {"uzawa": {"tolerance": 1e-9}} if name == "uzawa" else {"semismooth": {}}
+        history, shear, slip, dissipated = weakening_run(bench, critical_slip, enforce, 50, "bt")
+        law = PRESSURE * (MU_S - (MU_S - MU_K) * np.minimum(slip / critical_slip, 1.0))
+        moving = history["time"] > 2.0 + 1e-9
+        bench.below(f"{name}: slip up to the peak / D_c", np.abs(slip[~moving]).max() / critical_slip, 1e-7)
+        bench.close(f"{name}: peak", shear.max(), MU_S * PRESSURE, 1e-8)
+        bench.close(f"{name}: residual", shear[-1], MU_K * PRESSURE, 1e-8)
+        bench.below(f"{name}: distance from the law / residual", np.abs(shear - law)[moving].max() / (MU_K * PRESSURE), 1e-7)
+        # Work of the shear at the ends of increments: a sum to the right of a falling line, exact but for that.
+        work = MU_K * PRESSURE * slip[-1] + 0.5 * (MU_S - MU_K) * PRESSURE * critical_slip
+        bench.close(f"{name}: work on the fault", dissipated[-1], work, 0.02)
+        bench.close(f"{name}: work on the fault by increments", dissipated[-1], np.sum(shear[1:] * np.diff(slip)), 1e-6)
+
+
+def drop(bench):
+    """k = 3/4 W: no equilibrium between peak and residual; the increment after the peak ends on the residual.
+
+    Newton's method gets there when its first iterate does: the points' own springs eps = alpha E / h = 1.25 W are taken just above
+    W, and the increment dU beyond the peak so large that k dU = 0.7 MPa > (eps - W) D_c = 0.5 MPa. Full steps, for
+    the way there leads over larger residuals.
+    """
+    history, shear, slip, _ = weakening_run(bench, 0.01, {"semismooth": {"alpha": 1.25 * 200.0 * 12.5 / 30e3}}, 5, "basic")
+    peak = np.flatnonzero(np.abs(history["time"] - 2.0) < 1e-9)[0]
+    bench.close("peak", shear[peak], MU_S * PRESSURE, 1e-8)
+    bench.close("shear in the increment after it", shear[peak + 1], MU_K * PRESSURE, 1e-8)
+    bench.below("slip in that increment: D_c / slip", 0.01 / slip[peak + 1], 1.0)
+    bench.close("residual", shear[-1], MU_K * PRESSURE, 1e-8)
+
+
 CASES = {
+    "slip_weakening_fault": {"reference": weakening, "drop": drop},
     "prakash_clifton_step": {"reference": pressure_step},
     "rate_and_state_slider": {
         "velocity_step": velocity_step,
