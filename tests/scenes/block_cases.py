@@ -12,6 +12,61 @@ def friction_coefficient(history, pair):
     return np.abs(history[f"contact_{pair}_force_x"]) / history[f"contact_{pair}_force_y"]
 
 
+# --- block_on_incline -------------------------------------------------------------------------------------------------
+
+
+def check_incline(bench, name, results, weight, tether):
+    """Balance and friction at every angle; `tether`: its stiffness. Forces are on the block, x downhill, y out of the incline."""
+    mu, history = 0.5, results.history
+    tilted = history["time"] > 1.0
+    angle = np.radians(40.0 * (history["time"][tilted] - 1.0))
+    normal, friction = history["contact_incline_force_y"][tilted], history["contact_incline_force_x"][tilted]
+    pull = history["reaction_tether_end_x"][tilted]
+    stick = history["contact_incline_stick_area"][tilted]
+    total = history["contact_incline_area"][tilted]
+    bench.below(f"{name}: normal force - W cos, / W", np.abs(normal - weight * np.cos(angle)).max() / weight, 1e-6)
+    bench.below(f"{name}: balance along the incline / W", np.abs(friction + pull + weight * np.sin(angle)).max() / weight, 1e-6)
+    steep = np.tan(angle) > mu
+    bench.below(f"{name}: friction / W cos - mu above atan mu", np.abs(-friction / (weight * np.cos(angle)) - mu)[steep].max(), 1e-6)
+    bench.below(f"{name}: sticking part of the contact above atan mu", (stick / total)[steep].max(), 0.0)
+    bench.below(f"{name}: sticking part below it (negative)", -(stick / total)[~steep].min(), -0.05)
+    # At rest friction carries the weight, but for what the elastic give of the block puts on the tether.
+    bench.below(f"{name}: |friction + W sin| / W at rest", np.abs(friction + weight * np.sin(angle))[~steep].max() / weight, 2e-3)
+    slid = -pull / tether
+    exact = np.maximum(0.0, weight * (np.sin(angle) - mu * np.cos(angle))) / tether
+    bench.below(f"{name}: way down / way at 40 degrees, from the rigid block's", np.abs(np.abs(slid) - exact).max() / exact.max(), 0.02)
+
+
+def incline(bench):
+    weight, tether = 2000.0 * 9.81 * 0.2 * 0.1, 0.2e6 * 0.1 / 1.0
+    for name, enforce in (("semismooth", {}), ("uzawa", {"tolerance": 1e-8}), ("penalty", {"alpha": 100})):
+        results = bench.run("block_on_incline", {"contact.0.enforce": {name: enforce}})
+        check_incline(bench, name, results, weight, tether)
+
+
+def incline_solid(bench):
+    """In 3D, on a deformable ground whose mesh does not match."""
+    depth = 0.1
+    results = bench.run(
+        "block_on_incline",
+        {
+            "space": "solid",
+            "mesh.parameters": {"depth": depth, "n": 2},
+            "bodies.ground": "rubber",
+            "boundary": [
+                {"on": "tether_end", "displacement": {"x": "0", "z": "0"}},
+                {"on": "ground_base", "displacement": {"x": "0", "y": "0", "z": "0"}},
+            ],
+            "contact.0.master": "ground_top",
+            "steps.1.increments": 16,
+        },
+    )
+    check_incline(bench, "3D", results, 2000.0 * 9.81 * 0.2 * 0.1 * depth, 0.2e6 * 0.1 * depth)
+    points = results.points["incline"]
+    shear = np.linalg.norm(points["shear"], axis=1)
+    bench.below("3D: |shear| - mu p at the points / largest mu p", np.abs(shear - 0.5 * points["pressure"]).max() / (0.5 * points["pressure"].max()), 1e-6)
+
+
 # --- rate_and_state_slider --------------------------------------------------------------------------------------------
 
 MU, L, V0, PRESSURE, HEIGHT = 0.6, 2e-3, 1e-3, 10.0, 10.0
@@ -214,6 +269,7 @@ def drop(bench):
 
 
 CASES = {
+    "block_on_incline": {"reference": incline, "solid": incline_solid},
     "slip_weakening_fault": {"reference": weakening, "drop": drop},
     "prakash_clifton_step": {"reference": pressure_step},
     "rate_and_state_slider": {
