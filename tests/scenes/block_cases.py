@@ -3,7 +3,10 @@
 A block of height H whose sides carry the complementary shear is a spring of stiffness k = G / H per area, exactly, with any mesh.
 """
 import numpy as np
+import yaml
 
+import friction_laws
+import harness
 import references
 
 
@@ -268,7 +271,67 @@ def drop(bench):
     bench.close("residual", shear[-1], MU_K * PRESSURE, 1e-8)
 
 
+# --- friction_laws_gallery --------------------------------------------------------------------------------------------
+
+
+def gallery_laws():
+    path = harness.TOP / "inputs" / "friction_laws_gallery" / "laws.yaml"
+    return yaml.safe_load(path.read_text(encoding="utf-8"))
+
+
+def trace_law(history, compliance):
+    """Per increment: duration, pressure, shear and slip, the slip from the motion of the top and the block's own shear."""
+    time, area = history["time"], 400.0
+    pressure = history["contact_base_force_z"] / area
+    shear = np.hypot(history["contact_base_force_x"], history["contact_base_force_y"]) / area
+    growth = np.log(100.0) / 3.0
+    pull = 0.1 * (np.maximum(np.minimum(time, 1.0) - 0.01, 0.0) + np.expm1(growth * np.maximum(time - 1.0, 0.0)) / growth)
+    slip = np.diff(pull - shear * compliance, prepend=0.0)
+    return np.diff(time, prepend=0.0), pressure, shear, slip
+
+
+def check_law(bench, name, parameters, enforce):
+    """Every increment on the law: the shear at the limit in slip, at most the limit in stick."""
+    kind, options = next(iter(enforce.items()))
+    compliance = 10.0 / 105e3
+    changes = {"contact.0.friction": {name: parameters}, "contact.0.enforce": enforce}
+    if kind == "penalty":  # springs of alpha E / h let the base sink and lag
+        compliance += 10.0 / (options["alpha"] * 210e3)
+        changes["boundary.1.displacement.z"] = (
+            f"-(p0*min(t/0.01,1) + (p1-p0)*min(max(t-0.03,0)/0.97,1))*(z + {10.0 / options['alpha']})/E"
+        )
+    history = bench.run("friction_laws_gallery", changes).history
+    duration, pressure, shear, slip = trace_law(history, compliance)
+    slides = history["contact_base_slip_area"] > 0.0
+    state, off, above, longest = None, 0.0, 0.0, 0.0
+    for i in range(1, len(shear)):  # the first increment only presses
+        limit, state = friction_laws.LAWS[name](parameters, pressure[i], slip[i] if slides[i] else 0.0, duration[i], state)
+        if slides[i]:
+            off = max(off, abs(shear[i] / limit - 1.0))
+        else:
+            above = max(above, shear[i] / limit - 1.0)
+            longest = max(longest, abs(slip[i]))
+    sine = -history["contact_base_force_y"] / (400.0 * np.maximum(shear, 1e-300))
+    bench.below(f"{name}, {kind}: sliding increments (negative)", -np.count_nonzero(slides), -50)
+    bench.below(f"{name}, {kind}: distance of sliding increments from the law, relative", off, 1e-6)
+    bench.below(f"{name}, {kind}: sticking increments above the law, relative", above, 1e-6)
+    bench.below(f"{name}, {kind}: slip in stick, mm", longest, 1e-9)
+    bench.below(f"{name}, {kind}: direction of the shear", np.abs(sine[slides] - 0.5).max(), 1e-6)
+
+
+def gallery(bench):
+    for name, parameters in gallery_laws().items():
+        check_law(bench, name, parameters, {"semismooth": {}})
+
+
+def gallery_formulations(bench):
+    for name, parameters in gallery_laws().items():
+        check_law(bench, name, parameters, {"uzawa": {"tolerance": 1e-9}})
+        check_law(bench, name, parameters, {"penalty": {"alpha": 10}})
+
+
 CASES = {
+    "friction_laws_gallery": {"reference": gallery, "formulations": gallery_formulations},
     "block_on_incline": {"reference": incline, "solid": incline_solid},
     "slip_weakening_fault": {"reference": weakening, "drop": drop},
     "prakash_clifton_step": {"reference": pressure_step},
