@@ -28,16 +28,24 @@ def check_incline(bench, name, results, weight, tether):
     stick = history["contact_incline_stick_area"][tilted]
     total = history["contact_incline_area"][tilted]
     bench.below(f"{name}: normal force - W cos, / W", np.abs(normal - weight * np.cos(angle)).max() / weight, 1e-6)
-    bench.below(f"{name}: balance along the incline / W", np.abs(friction + pull + weight * np.sin(angle)).max() / weight, 1e-6)
+    bench.below(
+        f"{name}: balance along the incline / W", np.abs(friction + pull + weight * np.sin(angle)).max() / weight, 1e-6
+    )
     steep = np.tan(angle) > mu
-    bench.below(f"{name}: friction / W cos - mu above atan mu", np.abs(-friction / (weight * np.cos(angle)) - mu)[steep].max(), 1e-6)
+    bench.below(
+        f"{name}: friction / W cos - mu above atan mu", np.abs(-friction / (weight * np.cos(angle)) - mu)[steep].max(), 1e-6
+    )
     bench.below(f"{name}: sticking part of the contact above atan mu", (stick / total)[steep].max(), 0.0)
     bench.below(f"{name}: sticking part below it (negative)", -(stick / total)[~steep].min(), -0.05)
     # At rest friction carries the weight, but for what the elastic give of the block puts on the tether.
-    bench.below(f"{name}: |friction + W sin| / W at rest", np.abs(friction + weight * np.sin(angle))[~steep].max() / weight, 2e-3)
+    bench.below(
+        f"{name}: |friction + W sin| / W at rest", np.abs(friction + weight * np.sin(angle))[~steep].max() / weight, 2e-3
+    )
     slid = -pull / tether
     exact = np.maximum(0.0, weight * (np.sin(angle) - mu * np.cos(angle))) / tether
-    bench.below(f"{name}: way down / way at 40 degrees, from the rigid block's", np.abs(np.abs(slid) - exact).max() / exact.max(), 0.02)
+    bench.below(
+        f"{name}: way down / way at 40 degrees, from the rigid block's", np.abs(np.abs(slid) - exact).max() / exact.max(), 0.02
+    )
 
 
 def incline(bench):
@@ -67,7 +75,9 @@ def incline_solid(bench):
     check_incline(bench, "3D", results, 2000.0 * 9.81 * 0.2 * 0.1 * depth, 0.2e6 * 0.1 * depth)
     points = results.points["incline"]
     shear = np.linalg.norm(points["shear"], axis=1)
-    bench.below("3D: |shear| - mu p at the points / largest mu p", np.abs(shear - 0.5 * points["pressure"]).max() / (0.5 * points["pressure"].max()), 1e-6)
+    bench.below(
+        "3D: |shear| - mu p at the points / largest mu p", np.abs(shear - 0.5 * points["pressure"]).max() / (0.5 * points["pressure"].max()), 1e-6
+    )
 
 
 # --- rate_and_state_slider --------------------------------------------------------------------------------------------
@@ -96,10 +106,14 @@ def velocity_step(bench):
             time - 21.0, V1, V2, {"mu": MU, "a": a, "b": b, "L": L, "v0": V0}, stiffness / PRESSURE, evolution
         )
         jump = a * np.log(V2 / V1)
-        bench.below(f"{evolution}: largest difference from the ODE / direct jump", np.abs(found - exact).max() / jump, 0.02)
+        bench.below(
+            f"{evolution}: largest difference from the ODE / direct jump", np.abs(found - exact).max() / jump, 0.02
+        )
         direct, evolved = found.max() - before, found.max() - found[-1]
         bench.close(f"{evolution}: direct effect, peak / ln(V2/V1)", direct, exact.max() - before, 0.02)
-        bench.close(f"{evolution}: evolution effect, fall from the peak / ln(V2/V1)", evolved, exact.max() - exact[-1], 0.02)
+        bench.close(
+            f"{evolution}: evolution effect, fall from the peak / ln(V2/V1)", evolved, exact.max() - exact[-1], 0.02
+        )
         bench.close(f"{evolution}: a - b", (found[-1] - before) / np.log(V2 / V1), a - b, 0.01)
 
 
@@ -183,7 +197,9 @@ def stick_slip(bench):
     # An event fills one increment and ends on the steady line of the law at the rate slip / dt.
     lands = MU + (a - b) * np.log(slip[events] / dt / V0)
     bench.below("events end on the steady line", np.abs(found[events + 1] - lands).max(), 1e-4)
-    bench.below("smallest slip rate between events / rate of pulling", slip[events[1] : events[2]].min() / (v2 * dt), 0.2)
+    bench.below(
+        "smallest slip rate between events / rate of pulling", slip[events[1] : events[2]].min() / (v2 * dt), 0.2
+    )
     periods = np.diff(time[events])[1:]
     bench.below("spread of the periods in increments", np.ptp(periods) / dt, 1.0)
 
@@ -211,10 +227,14 @@ def pressure_step(bench):
         before, after = np.flatnonzero(time <= 3.0)[-1], time > 3.0
         bench.close(f"{name}: steady shear before the step", shear[before], mu * p1, 1e-9)
         bench.close(f"{name}: pressure after it", pressure[before + 1], p2, 1e-9)
-        bench.below(f"{name}: jump of the shear with the pressure / mu (p2 - p1)", abs(shear[before + 1] / (mu * p1) - 1.0), 1e-4)
+        bench.below(
+            f"{name}: jump of the shear with the pressure / mu (p2 - p1)", abs(shear[before + 1] / (mu * p1) - 1.0), 1e-4
+        )
         slip = rate * (time[after] - 3.0) - (shear[after] - shear[before]) * compliance
         exact = mu * p2 - mu * (p2 - p1) * np.exp(-slip / length)
-        bench.below(f"{name}: largest distance from exp(-s/L) / mu (p2 - p1)", np.abs(shear[after] - exact).max() / (mu * (p2 - p1)), 0.01)
+        bench.below(
+            f"{name}: largest distance from exp(-s/L) / mu (p2 - p1)", np.abs(shear[after] - exact).max() / (mu * (p2 - p1)), 0.01
+        )
 
 
 # --- slip_weakening_fault ---------------------------------------------------------------------------------------------
@@ -222,7 +242,7 @@ def pressure_step(bench):
 MU_S, MU_K = 0.7, 0.5
 
 
-def weakening_run(bench, critical_slip, enforce, increments, linesearch):
+def weakening_run(bench, critical_slip, enforce, increments):
     """The fault's shear, slip and dissipation by increment from the end of pressing on."""
     stiffness, width, rate = 150.0, 100.0, MU_S * PRESSURE / 150.0
     history = bench.run(
@@ -231,7 +251,6 @@ def weakening_run(bench, critical_slip, enforce, increments, linesearch):
             "contact.0.friction.slip_weakening.D_c": critical_slip,
             "contact.0.enforce": enforce,
             "steps.2.increments": increments,
-            "petsc": {"snes_linesearch_type": linesearch},
         },
     ).history
     shear = np.abs(history["contact_fault_force_x"]) / width
@@ -245,13 +264,15 @@ def weakening(bench):
     critical_slip = 0.02
     for name in ("semismooth", "uzawa"):
         enforce = {"uzawa": {"tolerance": 1e-9}} if name == "uzawa" else {"semismooth": {}}
-        history, shear, slip, dissipated = weakening_run(bench, critical_slip, enforce, 50, "bt")
+        history, shear, slip, dissipated = weakening_run(bench, critical_slip, enforce, 50)
         law = PRESSURE * (MU_S - (MU_S - MU_K) * np.minimum(slip / critical_slip, 1.0))
         moving = history["time"] > 2.0 + 1e-9
         bench.below(f"{name}: slip up to the peak / D_c", np.abs(slip[~moving]).max() / critical_slip, 1e-7)
         bench.close(f"{name}: peak", shear.max(), MU_S * PRESSURE, 1e-8)
         bench.close(f"{name}: residual", shear[-1], MU_K * PRESSURE, 1e-8)
-        bench.below(f"{name}: distance from the law / residual", np.abs(shear - law)[moving].max() / (MU_K * PRESSURE), 1e-7)
+        bench.below(
+            f"{name}: distance from the law / residual", np.abs(shear - law)[moving].max() / (MU_K * PRESSURE), 1e-7
+        )
         # Work of the shear at the ends of increments: a sum to the right of a falling line, exact but for that.
         work = MU_K * PRESSURE * slip[-1] + 0.5 * (MU_S - MU_K) * PRESSURE * critical_slip
         bench.close(f"{name}: work on the fault", dissipated[-1], work, 0.02)
@@ -262,10 +283,9 @@ def drop(bench):
     """k = 3/4 W: no equilibrium between peak and residual; the increment after the peak ends on the residual.
 
     Newton's method gets there when its first iterate does: the points' own springs eps = alpha E / h = 1.25 W are taken just above
-    W, and the increment dU beyond the peak so large that k dU = 0.7 MPa > (eps - W) D_c = 0.5 MPa. Full steps, for
-    the way there leads over larger residuals.
+    W, and the increment dU beyond the peak so large that k dU = 0.7 MPa > (eps - W) D_c = 0.5 MPa.
     """
-    history, shear, slip, _ = weakening_run(bench, 0.01, {"semismooth": {"alpha": 1.25 * 200.0 * 12.5 / 30e3}}, 5, "basic")
+    history, shear, slip, _ = weakening_run(bench, 0.01, {"semismooth": {"alpha": 1.25 * 200.0 * 12.5 / 30e3}}, 5)
     peak = np.flatnonzero(np.abs(history["time"] - 2.0) < 1e-9)[0]
     bench.close("peak", shear[peak], MU_S * PRESSURE, 1e-8)
     bench.close("shear in the increment after it", shear[peak + 1], MU_K * PRESSURE, 1e-8)
@@ -336,8 +356,67 @@ def gallery_formulations(bench):
         check_law(bench, name, parameters, {"penalty": {"alpha": 20}})
 
 
+def release(bench):
+    """Weakened, unloaded to no pressure, moved, lifted, pressed again: the surface has forgotten, whatever the law remembers."""
+    touching = "(-0.005*(min(t,1)-min(max(t-2,0),1)) + 0.01*min(max(t-4,0),1) - 0.015*min(max(t-5,0),1))"
+    lifted = "(-0.005*min(t,1) + 0.015*min(max(t-2,0),1) - 0.015*min(max(t-5,0),1))"  # at once
+    pull = "(0.5*min(max(t-1,0),1) + 0.1*min(max(t-3,0),1) + 0.5*max(t-6,0))"
+    steps = [("press", 1, 1), ("slide", 2, 20), ("unload", 3, 2), ("move", 4, 2), ("lift", 5, 2), ("close", 6, 4)]
+    steps.append(("slide_again", 7, 40))
+    parameters = gallery_laws()["slip_weakening"]
+    for enforce, depth in (({"semismooth": {}}, touching), ({"uzawa": {"tolerance": 1e-9}}, lifted)):
+        kind = next(iter(enforce))
+        history = bench.run(
+            "friction_laws_gallery",
+            {
+                "boundary.0": {"on": "top", "displacement": {"x": pull, "y": "0", "z": depth}},
+                "boundary.1.displacement.z": f"{depth} < 0 ? {depth}*z/10 : {depth}",
+                "contact.0.friction": {"slip_weakening": parameters},
+                "contact.0.enforce": enforce,
+                "steps": [{"name": name, "to": to, "increments": count} for name, to, count in steps],
+            },
+        ).history
+        time, area = history["time"], 400.0
+        pressure, shear = history["contact_base_force_z"] / area, np.abs(history["contact_base_force_x"]) / area
+        top = 0.5 * np.clip(time - 1.0, 0.0, 1.0) + 0.1 * np.clip(time - 3.0, 0.0, 1.0) + 0.5 * np.maximum(time - 6.0, 0.0)
+        full = 0.005 / 10.0 * 210e3
+        at = lambda moment: np.argmin(np.abs(time - moment))
+        bench.close(f"{kind}: residual before the release", shear[at(2.0)], parameters["mu_k"] * full, 1e-8)
+        idle = (time > 3.0 - 1e-9) & (time < 5.0 + 1e-9)
+        bench.below(
+            f"{kind}: pressure and shear while unloaded, moved and lifted", max(pressure[idle].max(), shear[idle].max()) / full, 1e-9
+        )
+        bench.close(f"{kind}: pressure after closing", pressure[at(6.0)], full, 1e-8)
+        bench.below(f"{kind}: shear after closing without motion", shear[at(6.0)] / full, 1e-9)
+        again = time > 6.0 + 1e-9
+        slip = top[again] - top[at(6.0)] - shear[again] * 10.0 / 105e3
+        law = friction_laws.slip_weakening(parameters, full, 0.0, 1.0, 0.0)[0] - full * 0.2 * np.minimum(slip / 0.2, 1.0)
+        bench.below(f"{kind}: slides again from mu_s, relative", np.abs(shear[again] / law - 1.0).max(), 1e-6)
+        bench.close(f"{kind}: residual at the end", shear[-1], parameters["mu_k"] * full, 1e-8)
+
+
+def no_coefficient(bench):
+    """mu = 0 is a frictionless block."""
+    for enforce in ({"semismooth": {}}, {"uzawa": {}}):
+        history = bench.run(
+            "friction_laws_gallery", {"contact.0.friction": {"coulomb": {"mu": 0}}, "contact.0.enforce": enforce}
+        ).history
+        shear = np.hypot(history["contact_base_force_x"], history["contact_base_force_y"])
+        bench.below(
+            f"{next(iter(enforce))}: shear / normal force", (shear / history["contact_base_force_z"]).max(), 1e-12
+        )
+        bench.below(
+            f"{next(iter(enforce))}: dissipation / stored energy", history["energy_dissipated"].max() / history["energy_stored"].max(), 1e-12
+        )
+
+
 CASES = {
-    "friction_laws_gallery": {"reference": gallery, "formulations": gallery_formulations},
+    "friction_laws_gallery": {
+        "reference": gallery,
+        "formulations": gallery_formulations,
+        "release": release,
+        "no_coefficient": no_coefficient,
+    },
     "block_on_incline": {"reference": incline, "solid": incline_solid},
     "slip_weakening_fault": {"reference": weakening, "drop": drop},
     "prakash_clifton_step": {"reference": pressure_step},

@@ -43,8 +43,8 @@ def block_on_incline(bench):
 def slip_weakening_fault(bench):
     figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
     runs = (
-        (0.02, block_cases.weakening_run(bench, 0.02, {"semismooth": {}}, 50, "bt"), "D_c = 0.02 mm: k = 1.5 W"),
-        (0.01, block_cases.weakening_run(bench, 0.01, {"semismooth": {"alpha": 5.0 / 48.0}}, 5, "basic"), "D_c = 0.01 mm: k = 0.75 W"),
+        (0.02, block_cases.weakening_run(bench, 0.02, {"semismooth": {}}, 50), "D_c = 0.02 mm: k = 1.5 W"),
+        (0.01, block_cases.weakening_run(bench, 0.01, {"semismooth": {"alpha": 5.0 / 48.0}}, 5), "D_c = 0.01 mm: k = 0.75 W"),
     )
     for (length, (_, shear, slip, _), label), colour in zip(runs, ("#d1603d", "#3a8f6b")):
         law = np.array([0.0, length, 0.045])
