@@ -33,18 +33,21 @@ def check_incline(bench, name, results, weight, tether):
     )
     steep = np.tan(angle) > mu
     bench.below(
-        f"{name}: friction / W cos - mu above atan mu", np.abs(-friction / (weight * np.cos(angle)) - mu)[steep].max(), 1e-6
+        f"{name}: friction / W cos - mu above atan mu",
+        np.abs(-friction / (weight * np.cos(angle)) - mu)[steep].max(), 1e-6,
     )
     bench.below(f"{name}: sticking part of the contact above atan mu", (stick / total)[steep].max(), 0.0)
     bench.below(f"{name}: sticking part below it (negative)", -(stick / total)[~steep].min(), -0.05)
     # At rest friction carries the weight, but for what the elastic give of the block puts on the tether.
     bench.below(
-        f"{name}: |friction + W sin| / W at rest", np.abs(friction + weight * np.sin(angle))[~steep].max() / weight, 2e-3
+        f"{name}: |friction + W sin| / W at rest",
+        np.abs(friction + weight * np.sin(angle))[~steep].max() / weight, 2e-3,
     )
     slid = -pull / tether
     exact = np.maximum(0.0, weight * (np.sin(angle) - mu * np.cos(angle))) / tether
     bench.below(
-        f"{name}: way down / way at 40 degrees, from the rigid block's", np.abs(np.abs(slid) - exact).max() / exact.max(), 0.02
+        f"{name}: way down / way at 40 degrees, from the rigid block's",
+        np.abs(np.abs(slid) - exact).max() / exact.max(), 0.02,
     )
 
 
@@ -76,7 +79,8 @@ def incline_solid(bench):
     points = results.points["incline"]
     shear = np.linalg.norm(points["shear"], axis=1)
     bench.below(
-        "3D: |shear| - mu p at the points / largest mu p", np.abs(shear - 0.5 * points["pressure"]).max() / (0.5 * points["pressure"].max()), 1e-6
+        "3D: |shear| - mu p at the points / largest mu p",
+        np.abs(shear - 0.5 * points["pressure"]).max() / (0.5 * points["pressure"].max()), 1e-6,
     )
 
 
@@ -228,12 +232,14 @@ def pressure_step(bench):
         bench.close(f"{name}: steady shear before the step", shear[before], mu * p1, 1e-9)
         bench.close(f"{name}: pressure after it", pressure[before + 1], p2, 1e-9)
         bench.below(
-            f"{name}: jump of the shear with the pressure / mu (p2 - p1)", abs(shear[before + 1] / (mu * p1) - 1.0), 1e-4
+            f"{name}: jump of the shear with the pressure / mu (p2 - p1)",
+            abs(shear[before + 1] / (mu * p1) - 1.0), 1e-4,
         )
         slip = rate * (time[after] - 3.0) - (shear[after] - shear[before]) * compliance
         exact = mu * p2 - mu * (p2 - p1) * np.exp(-slip / length)
         bench.below(
-            f"{name}: largest distance from exp(-s/L) / mu (p2 - p1)", np.abs(shear[after] - exact).max() / (mu * (p2 - p1)), 0.01
+            f"{name}: largest distance from exp(-s/L) / mu (p2 - p1)",
+            np.abs(shear[after] - exact).max() / (mu * (p2 - p1)), 0.01,
         )
 
 
@@ -384,7 +390,8 @@ def release(bench):
         bench.close(f"{kind}: residual before the release", shear[at(2.0)], parameters["mu_k"] * full, 1e-8)
         idle = (time > 3.0 - 1e-9) & (time < 5.0 + 1e-9)
         bench.below(
-            f"{kind}: pressure and shear while unloaded, moved and lifted", max(pressure[idle].max(), shear[idle].max()) / full, 1e-9
+            f"{kind}: pressure and shear while unloaded, moved and lifted",
+            max(pressure[idle].max(), shear[idle].max()) / full, 1e-9,
         )
         bench.close(f"{kind}: pressure after closing", pressure[at(6.0)], full, 1e-8)
         bench.below(f"{kind}: shear after closing without motion", shear[at(6.0)] / full, 1e-9)
@@ -406,7 +413,8 @@ def no_coefficient(bench):
             f"{next(iter(enforce))}: shear / normal force", (shear / history["contact_base_force_z"]).max(), 1e-12
         )
         bench.below(
-            f"{next(iter(enforce))}: dissipation / stored energy", history["energy_dissipated"].max() / history["energy_stored"].max(), 1e-12
+            f"{next(iter(enforce))}: dissipation / stored energy",
+            history["energy_dissipated"].max() / history["energy_stored"].max(), 1e-12,
         )
 
 
