@@ -132,10 +132,17 @@ Worst check_tension(const CertificateInput& input) {
         largest[pair] = std::max(largest[pair], pressure);
   MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, mesh.comm);
   const double overall = largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
+  std::vector<double> areas(input.pairs.size(), 0.0);
+  for (std::size_t pair = 0; pair < areas.size(); ++pair)
+    for (const double weight : input.samples[pair].weight)
+      areas[pair] += weight;
+  MPI_Allreduce(MPI_IN_PLACE, areas.data(), static_cast<int>(areas.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
   Worst worst;
   for (std::size_t pair = 0; pair < largest.size(); ++pair) {
     const ContactSamples& samples = input.samples[pair];
-    const double scale = std::max(largest[pair], pressure_floor * overall);
+    // With every pair open the pressures are rounding, and so is the largest of them.
+    const double rounding = areas[pair] > 0.0 ? input.force_floor / areas[pair] : 0.0;
+    const double scale = std::max({largest[pair], pressure_floor * overall, rounding});
     const auto offer = [&](double pressure, std::span<const double> place) {
       if (pressure >= 0.0) return;
       worst.offer(-pressure / scale, [&] { return "pair '" + input.pairs[pair].name + "' at " + place_text(place); });

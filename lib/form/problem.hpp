@@ -43,6 +43,8 @@ class Problem {
 
   /// The state at `unknowns` (valid until the next call of any member). Collective.
   State state_at(Vec unknowns);
+  /// Is the next tangent the first of its increment? Forms then guess, and it need not be the residual's derivative.
+  bool is_first_guess() const { return first_guess_; }
 
   /// Out-of-balance forces; zero in the equations of prescribed displacements. Collective.
   void residual(Vec unknowns, Vec result);

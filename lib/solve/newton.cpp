@@ -39,6 +39,15 @@ std::string in_words(SNESConvergedReason reason, double relative) {
   }
 }
 
+/// The line search if it is one that backtracks, else null.
+SNESLineSearch backtracking(SNES snes) {
+  SNESLineSearch search = nullptr;
+  PetscBool is_backtracking = PETSC_FALSE;
+  AMT_PETSC(SNESGetLineSearch(snes, &search));
+  AMT_PETSC(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(search), SNESLINESEARCHBT, &is_backtracking));
+  return is_backtracking ? search : nullptr;
+}
+
 } // namespace
 
 void default_option(const std::string& name, const std::string& value) {
@@ -80,7 +89,11 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   AMT_PETSC(SNESSetFunction(snes_, residual_, evaluate_residual, this));
   AMT_PETSC(SNESSetJacobian(snes_, matrix_, matrix_, evaluate_tangent, this));
   AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
+  // PETSc takes a line search that gave up for convergence when its last step is shorter than stol |u|: any residual
+  // would pass where the residual has a minimum that is not zero.
+  AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
+  if (const auto search = backtracking(snes_)) AMT_PETSC(SNESLineSearchBTGetAlpha(search, &sufficient_decrease_));
   if (problem.layout().num_extra() == 0) set_near_null_space();
 }
 
@@ -99,6 +112,14 @@ void Newton::set_near_null_space() {
   AMT_PETSC(MatSetNearNullSpace(matrix_, modes));
 }
 
+/// Backtracking goes back until |F|² has fallen by alpha of what the tangent promises. A tangent that is no derivative
+/// promises nothing: with a large negative alpha its full step passes.
+void Newton::ask_for_decrease(bool is_asked) {
+  constexpr PetscReal accept_anything = -1e30;
+  if (const auto search = backtracking(snes_))
+    AMT_PETSC(SNESLineSearchBTSetAlpha(search, is_asked ? sufficient_decrease_ : accept_anything));
+}
+
 PetscErrorCode Newton::evaluate_residual(SNES, Vec unknowns, Vec result, void* self) {
   auto& newton = *static_cast<Newton*>(self);
   return guarded(newton.kept_, [&] { newton.problem_.residual(unknowns, result); });
@@ -107,6 +128,7 @@ PetscErrorCode Newton::evaluate_residual(SNES, Vec unknowns, Vec result, void* s
 PetscErrorCode Newton::evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, void* self) {
   auto& newton = *static_cast<Newton*>(self);
   return guarded(newton.kept_, [&] {
+    newton.ask_for_decrease(!newton.problem_.is_first_guess());
     if (newton.problem_.tangent(unknowns, matrix)) ++newton.factorizations_;
   });
 }

@@ -48,6 +48,7 @@ class Newton {
   static PetscErrorCode test_convergence(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                          SNESConvergedReason* reason, void* self);
   void set_near_null_space();
+  void ask_for_decrease(bool is_asked);
 
   Problem& problem_;
   std::function<bool()> interrupted_;
@@ -56,6 +57,7 @@ class Newton {
   VecHandle residual_;
   std::exception_ptr kept_;
   int factorizations_ = 0, least_iterations_ = 0;
+  PetscReal sufficient_decrease_ = 0.0; // of a backtracking line search
 };
 
 } // namespace amontons
