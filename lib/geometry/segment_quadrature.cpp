@@ -1,6 +1,7 @@
 #include "geometry/segment_quadrature.hpp"
 
 #include "geometry/clipping.hpp"
+#include "geometry/facet_map.hpp"
 #include "geometry/projection.hpp"
 #include "math/reference_element.hpp"
 
@@ -14,8 +15,6 @@ namespace amontons {
 
 namespace {
 
-/// A facet of order 2 whose nodes are this close, relative to its size, to where its linear facet has them is straight.
-constexpr double straight_tolerance = 1e-12;
 /// Overlaps whose areas add up to the facet's within this part of it cover it completely.
 constexpr double cover_tolerance = 1e-12;
 /// Rounding in taking a point of a piece back to the facet, in reference coordinates.
@@ -57,30 +56,10 @@ std::vector<std::vector<int>> subdivision(ElementType type) {
 }
 
 template <int dim>
-bool is_straight(const FacetNodes& facet) {
-  if (element_order(facet.type) == 1) return true;
-  const auto linear = linear_element(facet.type);
-  const auto reference = reference_nodes(facet.type);
-  const int corners = num_vertices(facet.type);
-  const double allowed = straight_tolerance * facet_size(facet.type, facet.nodes);
-  std::array<double, 4> shape{};
-  for (int a = corners; a < num_nodes(facet.type); ++a) {
-    shape_values(linear, reference.subspan(std::size_t(a) * (dim - 1), dim - 1), std::span(shape).first(corners));
-    for (int c = 0; c < dim; ++c) {
-      double place = -facet.nodes[std::size_t(a) * dim + c];
-      for (int b = 0; b < corners; ++b)
-        place += shape[b] * facet.nodes[std::size_t(b) * dim + c];
-      if (std::abs(place) > allowed) return false;
-    }
-  }
-  return true;
-}
-
-template <int dim>
 std::vector<Cell<dim>> linear_cells(const FacetNodes& facet) {
   std::vector<int> corners(num_vertices(facet.type));
   std::iota(corners.begin(), corners.end(), 0);
-  const bool whole = is_straight<dim>(facet);
+  const bool whole = facet::is_straight(facet.type, facet.nodes);
   const auto parts = whole ? std::vector<std::vector<int>>{corners} : subdivision(facet.type);
   const auto reference = reference_nodes(facet.type);
   std::vector<Cell<dim>> cells;
