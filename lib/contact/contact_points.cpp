@@ -1,5 +1,6 @@
 #include "contact/contact_points.hpp"
 
+#include "fe/node_numbering.hpp"
 #include "geometry/projection.hpp"
 #include "geometry/segment_quadrature.hpp"
 #include "math/reference_element.hpp"
@@ -16,6 +17,9 @@ namespace {
 constexpr double facing_cosine = -0.1;
 /// A projection onto the rim of the master counts when the point stands over it within this part of a facet.
 constexpr double rim_tolerance = 1e-6;
+
+/// A node has a master when this part of its support does; the equation of its multiplier is no smaller than that.
+constexpr double least_cover = 1e-6;
 
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0.0;
@@ -70,10 +74,12 @@ ContactPoints::ContactPoints(const DofLayout& layout, const ContactPair& pair)
     place_by_segments(segment->degree);
   else
     place_by_rule(std::visit([](const auto& integration) { return integration.degree; }, pair.integration));
-  if (master_)
+  if (master_) {
     search();
-  else
+    average_over_master();
+  } else {
     move_rigid_master(0.0);
+  }
   scratch_ = {};
 }
 
@@ -162,7 +168,8 @@ void ContactPoints::add_point(std::int32_t facet, std::span<const double> positi
                               double area, std::size_t values, std::int32_t guess) {
   const int d = mesh_.dim;
   const auto type = slave_->types[facet];
-  ContactPoint point{.facet = facet, .values = values};
+  const std::size_t behind_slave = element_order(type) == 1 ? 0 : num_nodes(type);
+  ContactPoint point{.facet = facet, .values = values, .multipliers = values + 2 + behind_slave};
   Scratch scratch{.slave_normal = {}, .guess = guess};
   facet_normal(type, positions, xi, scratch.slave_normal);
   const auto shape = slave_shape(point);
@@ -218,6 +225,40 @@ void ContactPoints::order_by_master() {
         if (points_[i].master == master) ordered.push_back(points_[i]);
   }
   points_ = std::move(ordered);
+}
+
+/// Takes the points without a master out of the multiplier basis of nodes that have a master in part of their support.
+void ContactPoints::average_over_master() {
+  NodeSpace space(mesh_, {{.name = pair_.slave, .nodes = mesh_.node_groups.at(pair_.slave)}});
+  const auto& nodes = space.fields()[0].nodes;
+  std::vector<std::int32_t> position(mesh_.num_local(), -1);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    position[nodes[i]] = static_cast<std::int32_t>(i);
+  std::vector<std::vector<double>> covered(1, std::vector<double>(nodes.size(), 0.0)), all = covered;
+  for (const auto& point : points_) {
+    const auto shape = multiplier_shape(point);
+    for (std::size_t a = 0; a < shape.size(); ++a) {
+      const auto at = position[slave_->facet(point.facet)[a]];
+      all[0][at] += point.weight * shape[a];
+      if (point.master != ContactPoint::none) covered[0][at] += point.weight * shape[a];
+    }
+  }
+  for (auto* part : {&covered, &all}) { // sums over the ranks that share a node
+    const auto global = space.new_vector();
+    space.add(*part, global);
+    space.gather(global, *part);
+  }
+  for (auto& point : points_) {
+    if (point.master != ContactPoint::none) continue;
+    const auto shape = multiplier_shape(point);
+    std::vector<double> rest(shape.begin(), shape.end());
+    for (std::size_t a = 0; a < rest.size(); ++a) {
+      const auto at = position[slave_->facet(point.facet)[a]];
+      if (covered[0][at] > least_cover * all[0][at]) rest[a] = 0.0;
+    }
+    point.multipliers = values_.size();
+    values_.insert(values_.end(), rest.begin(), rest.end());
+  }
 }
 
 void ContactPoints::set_epsilon(ContactPoint& point) const {

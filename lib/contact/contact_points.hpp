@@ -17,7 +17,8 @@ namespace amontons {
 struct ContactPoint {
   std::int32_t facet;         // of the slave FacetSet
   std::int32_t master = none; // facet of the MasterSurface, or one of the marks below
-  std::size_t values;         // where ContactPoints keeps its ξ and slave shape functions
+  std::size_t values;         // where ContactPoints keeps its ξ and slave shape functions,
+  std::size_t multipliers;    // and its multiplier basis
   double weight = 0.0;        // area
   double size = 0.0;          // h of the slave facet
   double epsilon = 0.0;       // augmentation parameter, force / volume
@@ -41,14 +42,15 @@ class ContactPoints {
   const std::vector<ContactPoint>& points() const { return points_; }
   MasterSurface* master() const { return master_.get(); }
   bool has_rigid_master() const { return !master_; }
-  /// Values of the slave facet's shape functions, and of its multiplier basis (linear), at a point.
+  /// Values of the slave facet's shape functions at a point.
   std::span<const double> slave_shape(const ContactPoint& point) const {
     return std::span(values_).subspan(point.values + 2, num_nodes(slave_->types[point.facet]));
   }
+  /// Values of the facet's multiplier basis (linear). A point without a master, which is open for good, counts only for
+  /// nodes that have no master anywhere around them: theirs is zero, and all others are an average over the area that
+  /// has a master.
   std::span<const double> multiplier_shape(const ContactPoint& point) const {
-    const auto type = slave_->types[point.facet];
-    const std::size_t first = point.values + 2 + (element_order(type) == 1 ? 0 : num_nodes(type));
-    return std::span(values_).subspan(first, num_vertices(type));
+    return std::span(values_).subspan(point.multipliers, num_vertices(slave_->types[point.facet]));
   }
   /// Place on the slave facet.
   std::array<double, 2> xi(const ContactPoint& point) const {
@@ -74,6 +76,7 @@ class ContactPoints {
   void add_point(std::int32_t facet, std::span<const double> positions, std::span<const double> xi, double area,
                  std::size_t values, std::int32_t guess);
   std::size_t add_values(ElementType type, std::span<const double> xi);
+  void average_over_master();
   void search();
   void order_by_master();
   void find_closest(ContactPoint& point, const Scratch& scratch);
@@ -85,8 +88,8 @@ class ContactPoints {
   const ContactPair& pair_;
   const FacetSet* slave_;
   std::vector<ContactPoint> points_;
-  /// ξ (two numbers), slave shape functions, and multiplier basis where it differs (order 2). Rows of a rule on facets
-  /// are shared by all facets of a type, those on segments belong to one point.
+  /// ξ (two numbers), slave shape functions, multiplier basis where it differs (order 2). Rows of a rule on facets are
+  /// shared by all facets of a type, those on segments belong to one point.
   std::vector<double> values_;
   std::vector<Scratch> scratch_; // per point, during construction
   std::unique_ptr<MasterSurface> master_;

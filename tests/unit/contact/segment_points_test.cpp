@@ -1,6 +1,7 @@
 // Contact points on segments: places, masters and weights against geometry, forces of a uniform pressure on both sides
 // against exact ones, independence of the number of ranks, slaves that stick out of the master.
 #include "contact/contact_form.hpp"
+#include "contact/uzawa_multipliers.hpp"
 #include "form/problem.hpp"
 #include "two_blocks.hpp"
 
@@ -163,5 +164,78 @@ TEST_CASE("a slave that sticks out of the master: what is over it is covered exa
     MPI_Allreduce(MPI_IN_PLACE, areas, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
     CHECK(areas[0] == doctest::Approx(0.6).epsilon(1e-12));
     CHECK(areas[1] == doctest::Approx(1.0).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a slave that sticks out: uniform traction is one multiplier wherever there is a master, zero elsewhere") {
+  for (const int dim : {2, 3})
+    for (const Integration& integration : {Integration(SegmentIntegration{2}), Integration(FacetIntegration{4})}) {
+      CAPTURE(dim);
+      CAPTURE(integration.index());
+      const double gap = -0.01;
+      const auto mesh = make_mesh(PETSC_COMM_WORLD, dim, gap, 0.4); // slave nodes at x = 0.4 ... 1.15, 1.4
+      const DofLayout layout(mesh, {}, {});
+      auto pair = declare_pair(mesh, Uzawa{});
+      pair.integration = integration;
+      ContactForm form(layout, pair);
+      UzawaMultipliers multipliers(mesh, {&form});
+      const auto u = layout.new_vector(), lambda = multipliers.new_vector();
+      const std::vector<double> displacement(std::size_t(mesh.num_local()) * dim, 0.0);
+      const State state{.time = 0.0, .unknowns = u, .displacement = displacement};
+      multipliers.updated(state, lambda);
+      multipliers.set(lambda);
+      const double epsilon = 150.0 / 0.25; // harmonic mean of the stiffnesses over the facet's size
+      for (std::size_t i = 0; i < form.nodes().nodes.size(); ++i) {
+        const bool bare = mesh.position(form.nodes().nodes[i])[0] > 1.3;
+        CHECK(form.multipliers()[i] == doctest::Approx(bare ? 0.0 : epsilon * gap).epsilon(1e-11));
+      }
+    }
+}
+
+TEST_CASE("a slave that sticks out: no multiplier's equation is empty, and forces are those of the covered part") {
+  for (const int dim : {2, 3}) {
+    CAPTURE(dim);
+    const auto mesh = make_mesh(PETSC_COMM_WORLD, dim, 0.0, 0.4);
+    const std::vector<NodeField> fields = {multiplier_nodes(mesh, "interface", "upper_bottom")};
+    const DofLayout layout(mesh, {}, fields);
+    std::vector<std::unique_ptr<Form>> forms;
+    forms.push_back(std::make_unique<ContactForm>(layout, declare_pair(mesh, Semismooth{0})));
+    const double scale = static_cast<ContactForm*>(forms[0].get())->multiplier_scale();
+    Problem problem(layout, std::move(forms), {});
+    const auto u = layout.new_vector(), residual = layout.new_vector();
+    {
+      VecArray values(u);
+      for (PetscInt i = mesh.num_owned * dim; i < values.size(); ++i)
+        values[i] = -1.0 / scale;
+    }
+    // At contact with the right multipliers, the tangent of their rows is in the off-diagonal blocks: look at an open
+    // state for the diagonal, where a row of multipliers holds nothing else.
+    auto matrix = problem.new_matrix();
+    const auto open = layout.new_vector(), diagonal = layout.new_vector();
+    {
+      VecArray values(open);
+      for (PetscInt i = mesh.num_owned * dim; i < values.size(); ++i)
+        values[i] = 1.0 / scale;
+    }
+    problem.tangent(open, matrix);
+    MatGetDiagonal(matrix, diagonal);
+    VecReader entries(diagonal);
+    for (PetscInt i = mesh.num_owned * dim; i < entries.size(); ++i)
+      CHECK(entries[i] < -1e-4 * scale / std::pow(n_upper, dim - 1));
+
+    problem.residual(u, residual);
+    VecReader force(residual);
+    double sums[4] = {}; // up and down: force and moment
+    for (std::int32_t node = 0; node < mesh.num_owned; ++node) {
+      const double value = force[node * dim + dim - 1];
+      const std::size_t side = value < 0.0 ? 2 : 0;
+      sums[side] += std::abs(value);
+      sums[side + 1] += std::abs(value) * mesh.position(node)[0];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    for (const int side : {0, 2}) {
+      CHECK(sums[side] == doctest::Approx(0.6).epsilon(1e-12));
+      CHECK(sums[side + 1] == doctest::Approx(0.5 * (1.0 - 0.4 * 0.4)).epsilon(1e-12));
+    }
   }
 }
