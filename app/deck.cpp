@@ -147,9 +147,19 @@ ObjectRule<ContactDeck> contact_rule() {
   ObjectRule<FacetIntegrationDeck> facet;
   facet.optional("order", &FacetIntegrationDeck::order, integer(Range::between(1, 40)),
                  "Polynomial degree integrated exactly on a slave facet.");
+  ObjectRule<SegmentIntegrationDeck> segment;
+  segment.optional("order", &SegmentIntegrationDeck::order, integer(Range::between(1, 40)),
+                   "Polynomial degree integrated exactly on each piece of a slave facet.");
   TaggedRule<decltype(ContactDeck::integration)> integration;
-  integration.tag("facet", facet, "Gauss points on the slave facets.")
-      .not_yet("segment", "Use {facet: {order: ...}} with a higher order.");
+  integration
+      .tag("facet", facet,
+           "Gauss points on the slave facets: cheap, but blind to where master facets end, so a uniform pressure comes "
+           "across with an error (1e-2 to 1e-4 between flat surfaces).")
+      .tag("segment", segment,
+           "Gauss points on the overlaps of slave facets with single master facets: a uniform pressure comes across "
+           "exactly, for five to fifty times the points. Take it for accurate pressures between meshes that do not "
+           "match, and where the slave is the coarser side. Needs a meshed master.",
+           "M. A. Puso, Int. J. Numer. Meth. Engng. 59 (2004) 315-336.");
   ObjectRule<ContactDeck> rule;
   rule.required("name", &ContactDeck::name, identifier("name of the pair in the results"), "Names the pair in results.")
       .required("slave", &ContactDeck::slave, text(group_meaning),
@@ -168,6 +178,11 @@ ObjectRule<ContactDeck> contact_rule() {
                 "Multiplies the friction coefficient at each point (in its reference position) and time; >= 0. Not for "
                 "cohesions and shear limits. When absent: 1.")
       .check([](const DeckNode& node, const ContactDeck& value, Reading& reading) {
+        if (std::holds_alternative<SegmentIntegrationDeck>(value.integration) &&
+            !std::holds_alternative<Located<std::string>>(value.master.value))
+          reading.fail(node.find("integration")->place,
+                       node.path + ".integration: a rigid shape has no facets for segments to be cut by. Use " +
+                           "{facet: {order: ...}}.");
         if (value.friction_factor && !value.friction)
           reading.fail(node.place, node.path + " has a friction_factor but no friction. Add `friction: {coulomb: {mu: "
                                                "...}}` or another law, or take the factor out.");

@@ -84,6 +84,9 @@ struct SlaveNormalDeck {};
 struct FacetIntegrationDeck {
   int order = 4; // polynomial degree integrated exactly on a slave facet
 };
+struct SegmentIntegrationDeck {
+  int order = 4; // polynomial degree integrated exactly on each piece of a slave facet
+};
 
 struct ContactDeck {
   Located<std::string> name;
@@ -91,7 +94,7 @@ struct ContactDeck {
   Located<MasterDeck> master;
   EnforceDeck enforce;
   std::variant<ClosestPointDeck, SlaveNormalDeck> projection;
-  std::variant<FacetIntegrationDeck> integration;
+  std::variant<FacetIntegrationDeck, SegmentIntegrationDeck> integration;
   std::optional<double> search_distance; // absent: a tenth of the diagonal of the smaller surface's box
   std::optional<FrictionLaw> friction;   // absent: frictionless
   std::optional<Expression> friction_factor;

@@ -117,7 +117,11 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
       pair.friction = Friction{
           .law = *declared.friction, .factor = declared.friction_factor, .field = unknown ? unknown->field + 1 : -1};
     }
-    pair.integration_degree = std::get<FacetIntegrationDeck>(declared.integration).order;
+    std::visit(Overloaded{[&](const FacetIntegrationDeck& facet) { pair.integration = FacetIntegration{facet.order}; },
+                          [&](const SegmentIntegrationDeck& segment) {
+                            pair.integration = SegmentIntegration{segment.order};
+                          }},
+               declared.integration);
     pair.holds_floating_body = on_flagged_body(mesh, pair.slave, floating);
     pair.search_distance = declared.search_distance.value_or(0.1 * surface_diagonal(mesh, pair.slave));
     if (const auto* master = std::get_if<std::string>(&pair.master)) {

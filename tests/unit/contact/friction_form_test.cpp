@@ -23,6 +23,7 @@ struct Scene {
   FrictionLaw law = Coulomb{.mu = 0.3};
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Space space = Space::PlaneStrain;
+  Integration integration = FacetIntegration{};
 };
 
 /// Two blocks with nothing but a frictional pair between them, and displacements by formula.
@@ -53,6 +54,7 @@ struct Fixture {
                      .master = std::string("lower_top"),
                      .enforcement = scene.enforcement,
                      .projection = {},
+                     .integration = scene.integration,
                      .space = scene.dim == 3 ? Space::Solid : scene.space,
                      .stiffness = {100.0, 300.0}};
     pair.alpha = 3.0;
@@ -188,6 +190,16 @@ TEST_CASE("tangent of a frictional pair is the derivative of its residual in sti
           Fixture fixture({.dim = dim, .enforcement = enforcement, .law = law});
           check_tangent(fixture, motion);
         }
+}
+
+TEST_CASE("tangent of a frictional pair on segments") {
+  for (const int dim : {2, 3})
+    for (const Enforcement& enforcement : {Enforcement(Penalty{}), Enforcement(Uzawa{}), Enforcement(Semismooth{0})}) {
+      CAPTURE(dim);
+      CAPTURE(enforcement.index());
+      Fixture fixture({.dim = dim, .enforcement = enforcement, .integration = SegmentIntegration{}});
+      check_tangent(fixture, Motion::Mixed);
+    }
 }
 
 TEST_CASE("axisymmetric: tangent, and tractions by the full turn") {
