@@ -95,7 +95,7 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
   NodalStress recovered;
   std::vector<double> mises;
   if (wants_field(scene, "stress")) {
-    recovered = scene.bulk->nodal_stress(displacement);
+    recovered = scene.bulk->nodal_stress(state);
     const std::size_t components = scene.mesh.dim == 2 ? strain_size<2> : strain_size<3>;
     for (std::size_t at = 0; at < recovered.stress.size(); at += components) {
       mises.push_back(von_mises(std::span(recovered.stress).subspan(at, components)));

@@ -219,7 +219,7 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   const auto& layout = *scene->layout;
 
   std::vector<std::unique_ptr<Form>> forms;
-  auto bulk = std::make_unique<BulkForm>(layout, deck.space, laws);
+  auto bulk = std::make_unique<BulkForm>(layout, deck.space, laws, conditions.body);
   scene->bulk = bulk.get();
   forms.push_back(std::move(bulk));
   if (!conditions.surface.empty() || !conditions.body.empty() || !conditions.resultants.empty()) {
