@@ -46,6 +46,7 @@ struct MortarTransform::Entries {
 MortarTransform::MortarTransform(const Problem& problem, std::vector<MortarForm*> pairs)
     : problem_(problem), layout_(problem.layout()), dim_(problem.layout().dim()), pairs_(std::move(pairs)) {
   find_held();
+  facet_totals_.assign(layout_.mesh().num_local(), 0.0);
   for (const auto* pair : pairs_) {
     const NodeSpace space(layout_.mesh(), {pair->nodes()});
     std::vector<std::vector<double>> counts(1, std::vector<double>(pair->nodes().nodes.size(), 0.0));
@@ -54,6 +55,8 @@ MortarTransform::MortarTransform(const Problem& problem, std::vector<MortarForm*
     const auto global = space.new_vector();
     space.add(counts, global);
     space.gather(global, counts);
+    for (std::size_t i = 0; i < counts[0].size(); ++i)
+      facet_totals_[pair->nodes().nodes[i]] += counts[0][i];
     facet_counts_.push_back(std::move(counts[0]));
   }
   check_pairs();
@@ -248,6 +251,50 @@ MatHandle MortarTransform::couplings() const {
   return assemble(entries);
 }
 
+/// Rows of B or B⁻¹ at the middle nodes of a pair's slave facets. Held components are nodal values on both sides, so a
+/// held control that another row needs is spelled out: twice the middle less half of each end of its edge.
+void MortarTransform::add_control_rows(const MortarForm& pair, Direction direction, Entries& entries) const {
+  const auto& slave = pair.slave();
+  for (std::int32_t f = 0; f < slave.size(); ++f) {
+    const auto nodes = slave.facet(f);
+    const int vertices = num_vertices(slave.types[f]);
+    const auto& to_nodes = nodes_from_controls(slave.types[f]);
+    const auto& to_controls = controls_from_nodes(slave.types[f]);
+    for (std::size_t a = vertices; a < nodes.size(); ++a)
+      for (int c = 0; c < dim_; ++c) {
+        if (hold(nodes[a], c) != Hold::Free) continue;
+        const double share = 1.0 / facet_totals_[nodes[a]];
+        Eigen::RowVectorXd row = to_controls.row(a);
+        if (direction == Direction::ToNodes) {
+          row = to_nodes.row(a);
+          for (std::size_t k = vertices; k < nodes.size(); ++k)
+            if (k != a && hold(nodes[k], c) != Hold::Free) {
+              const double factor = row[k];
+              row[k] = 0.0;
+              row += factor * to_controls.row(k);
+            }
+        }
+        for (std::size_t k = 0; k < nodes.size(); ++k)
+          if (row[k] != 0.0) entries.add(layout_.equation(nodes[a], c), layout_.equation(nodes[k], c), share * row[k]);
+      }
+  }
+}
+
+/// B or its inverse.
+MatHandle MortarTransform::control_change(Direction direction) const {
+  Entries entries;
+  for (const auto* pair : pairs_)
+    add_control_rows(*pair, direction, entries);
+  const auto& mesh = layout_.mesh();
+  for (PetscInt local = 0; local < layout_.num_owned(); ++local) {
+    const auto node = static_cast<std::int32_t>(local / dim_);
+    const bool is_control = node < mesh.num_owned && facet_totals_[node] > 0.0 && !mesh.is_vertex[node] &&
+                            hold(node, static_cast<int>(local % dim_)) == Hold::Free;
+    if (!is_control) entries.add(layout_.first_equation() + local, layout_.first_equation() + local, 1.0);
+  }
+  return assemble(entries);
+}
+
 void MortarTransform::build() {
   frames_.clear();
   for (const auto* pair : pairs_) {
@@ -255,8 +302,17 @@ void MortarTransform::build() {
     for (std::size_t i = 0; i < pair->nodes().nodes.size(); ++i)
       frames.push_back(frame(*pair, i));
   }
-  const auto turn = reflections();
-  const auto couple = couplings();
+  auto turn = reflections();
+  auto couple = couplings();
+  inverse_ = product(turn, couple);
+  if (layout_.mesh().order == 2) {
+    AMT_PETSC(MatAYPX(inverse_, -1.0, product(turn, control_change(Direction::ToControls)), DIFFERENT_NONZERO_PATTERN));
+    const auto nodes = control_change(Direction::ToNodes);
+    turn = product(nodes, turn);
+    couple = product(nodes, couple);
+  } else {
+    AMT_PETSC(MatAYPX(inverse_, -1.0, turn, DIFFERENT_NONZERO_PATTERN));
+  }
   transform_ = MatHandle();
   AMT_PETSC(MatDuplicate(turn, MAT_COPY_VALUES, transform_.put()));
   auto next = product(couple, turn);
@@ -271,8 +327,6 @@ void MortarTransform::build() {
     next = product(couple, next);
     AMT_PETSC(MatNorm(next, NORM_FROBENIUS, &size));
   }
-  inverse_ = product(turn, couple);
-  AMT_PETSC(MatAYPX(inverse_, -1.0, turn, DIFFERENT_NONZERO_PATTERN));
   set_bounds();
 }
 

@@ -45,6 +45,9 @@ class MortarTransform : public BoundedUnknowns {
   MatHandle couplings() const;
   void couple_to_master(const MortarForm& pair, Entries& entries) const;
   void couple_to_held(const MortarForm& pair, Entries& entries) const;
+  enum class Direction : std::uint8_t { ToNodes, ToControls };
+  MatHandle control_change(Direction direction) const;
+  void add_control_rows(const MortarForm& pair, Direction direction, Entries& entries) const;
   MatHandle assemble(const Entries& entries) const;
   void set_bounds();
   std::string node_text(std::int32_t node) const;
@@ -54,6 +57,7 @@ class MortarTransform : public BoundedUnknowns {
   int dim_;
   std::vector<MortarForm*> pairs_;
   std::vector<Hold> hold_;                        // per local node and component
+  std::vector<double> facet_totals_;              // per local node: of all pairs
   std::vector<std::vector<double>> facet_counts_; // per pair and node: facets that meet there, over all ranks
   std::vector<std::vector<Frame>> frames_;        // per pair and node
   MatHandle transform_, inverse_;
