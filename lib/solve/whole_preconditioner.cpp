@@ -11,6 +11,7 @@ WholePreconditioner::WholePreconditioner(SNES snes) : snes_(snes) {
   AMT_PETSC(PCGetType(pc, &type));
   type_ = type;
   AMT_PETSC(PCSetType(pc, PCSHELL));
+  AMT_PETSC(PCSetOptionsPrefix(pc, "whole_")); // PETSc reads the options again later: -pc_type is the inner one's
   AMT_PETSC(PCShellSetContext(pc, this));
   AMT_PETSC(PCShellSetSetUp(pc, set_up));
   AMT_PETSC(PCShellSetApply(pc, apply));
