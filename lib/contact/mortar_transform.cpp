@@ -60,6 +60,7 @@ MortarTransform::MortarTransform(const Problem& problem, std::vector<MortarForm*
     facet_counts_.push_back(std::move(counts[0]));
   }
   check_pairs();
+  build();
 }
 
 void MortarTransform::find_held() {
@@ -95,10 +96,6 @@ void MortarTransform::check_pairs() const {
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
       const auto& pair = *pairs_[p];
       const auto& name = pair.pair().name;
-      if (covered[p] > 0.0 && bounded[p] == 0.0)
-        throw UserError("the contact pair '" + name + "' with enforce: {vi: {}}: all nodes of its slave surface '" +
-                        pair.pair().slave + "' have their displacement along the contact normal prescribed. Exchange " +
-                        "slave and master, or use `enforce: {semismooth: {}}`.");
       for (std::size_t i = 0; i < pair.nodes().nodes.size(); ++i) {
         const auto node = pair.nodes().nodes[i];
         if (pair.constraints()[i].weight == 0.0) continue;
@@ -117,6 +114,10 @@ void MortarTransform::check_pairs() const {
               ", which can have one master only. Leave a facet between the slave surfaces, exchange slave " +
               "and master of one pair, or use `enforce: {semismooth: {}}`.");
       }
+      if (covered[p] > 0.0 && bounded[p] == 0.0)
+        throw UserError("the contact pair '" + name + "' with enforce: {vi: {}}: all nodes of its slave surface '" +
+                        pair.pair().slave + "' have their displacement along the contact normal prescribed. Exchange " +
+                        "slave and master, or use `enforce: {semismooth: {}}`.");
     }
   });
 }
@@ -143,11 +144,11 @@ MortarTransform::Frame MortarTransform::frame(const MortarForm& pair, std::size_
 }
 
 bool MortarTransform::update(double time) {
-  bool changed = !transform_;
+  bool moved = false;
   for (auto* pair : pairs_)
-    changed = pair->move_rigid_master(time) || changed;
-  if (changed) build();
-  return changed;
+    moved = pair->move_rigid_master(time) || moved;
+  if (moved) build();
+  return moved;
 }
 
 MatHandle MortarTransform::assemble(const Entries& entries) const {

@@ -14,8 +14,8 @@ namespace amontons {
 class MortarTransform : public BoundedUnknowns {
  public:
   /// The forms belong to the problem, which must outlive this object. Throws UserError where two pairs would bind the
-  /// same slave node, where a resultant holds a slave node along its normal, and where no node of a pair is free to
-  /// move along its normal. Collective.
+  /// same slave node, where a resultant holds a slave node along its normal, where no node of a pair is free to move
+  /// along its normal, and where pairs form a ring. Collective.
   MortarTransform(const Problem& problem, std::vector<MortarForm*> pairs);
 
   bool update(double time) override;

@@ -15,7 +15,7 @@ class BoundedUnknowns {
   virtual ~BoundedUnknowns() = default;
 
   /// Moves rigid masters to where they are at `time`; returns whether the transformation or a bound is another than
-  /// before (always at the first call). Collective.
+  /// before. Collective.
   virtual bool update(double time) = 0;
   /// T and its inverse, as of the last update. A prescribed displacement is the same unknown in u and û.
   virtual Mat transform() const = 0;

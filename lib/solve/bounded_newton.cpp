@@ -24,7 +24,6 @@ bool is_semismooth() {
 } // namespace
 
 std::string choose_bounded_solver(const Problem& problem) {
-  default_option("-snes_type", SNESVINEWTONRSLS);
   // PETSc compares a length with this; a bounded unknown that is on its bound is there to the last digit.
   default_option("-snes_vi_zero_tolerance", "0");
   if (is_semismooth()) { // its Jacobian is not symmetric
@@ -216,7 +215,7 @@ SolveOutcome BoundedNewton::solve(Vec unknowns) {
   kept_ = nullptr;
   const Phase phase("linear solver");
   bounds_.release();
-  const bool moved = bounds_.update(problem_.time());
+  const bool moved = bounds_.update(problem_.time()) || !variation_;
   if (moved) take_transform();
   if (problem_.tangent(unknowns, tangent_) || moved) transform_tangent();
   AMT_PETSC(SNESVISetVariableBounds(snes_, bounds_.lower(), upper_));
