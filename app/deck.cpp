@@ -136,9 +136,19 @@ TaggedRule<EnforceDeck> enforce_rule() {
            "J. C. Simo, T. A. Laursen, Computers & Structures 42 (1992) 97-116.")
       .tag("penalty", penalty, "Contact traction proportional to the penetration; approximate.",
            "N. Kikuchi, J. T. Oden, Contact Problems in Elasticity, SIAM (1988).")
-      .not_yet("vi", "Use `semismooth`, which solves the same conditions exactly.");
+      .tag("vi", ObjectRule<ViDeck>(),
+           "Bounds on the normal motion of dual-basis mortar unknowns, solved as a variational inequality; "
+           "frictionless, "
+           "displacements only.",
+           "B. I. Wohlmuth, R. Krause, SIAM J. Sci. Comput. 25 (2003) 324-347.");
   return rule;
 }
+
+const std::string enforce_meaning =
+    "How the contact conditions are enforced. Take semismooth unless the problem is large: it is exact, converges "
+    "quadratically and knows friction, but its saddle point needs a direct solver. For more than some 300,000 unknowns "
+    "in 3D take vi when there is no friction (symmetric positive definite, multigrid, converges from any guess), uzawa "
+    "when there is; penalty is for quick looks.";
 
 ObjectRule<ContactDeck> contact_rule() {
   TaggedRule<decltype(ContactDeck::projection)> projection;
@@ -165,7 +175,7 @@ ObjectRule<ContactDeck> contact_rule() {
       .required("slave", &ContactDeck::slave, text(group_meaning),
                 "The surface that carries quadrature points and multipliers; take the finer or the softer one.")
       .required("master", &ContactDeck::master, master_rule(), "The surface projected onto, or a rigid shape.")
-      .optional("enforce", &ContactDeck::enforce, enforce_rule(), "How the contact conditions are enforced.")
+      .optional("enforce", &ContactDeck::enforce, enforce_rule(), enforce_meaning)
       .optional("projection", &ContactDeck::projection, projection, "How a slave point finds its master point.")
       .optional("integration", &ContactDeck::integration, integration, "How the slave surface is integrated over.")
       .optional(

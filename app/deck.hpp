@@ -77,7 +77,8 @@ struct UzawaDeck {
 struct SemismoothDeck {
   double alpha = 1.0;
 };
-using EnforceDeck = std::variant<SemismoothDeck, UzawaDeck, PenaltyDeck>;
+struct ViDeck {};
+using EnforceDeck = std::variant<SemismoothDeck, UzawaDeck, PenaltyDeck, ViDeck>;
 
 struct ClosestPointDeck {};
 struct SlaveNormalDeck {};

@@ -17,6 +17,7 @@ const char* const axes[] = {"x", "y", "z"};
 
 std::string enforcement_name(const ContactPair& pair) {
   if (std::holds_alternative<Penalty>(pair.enforcement)) return "penalty";
+  if (std::holds_alternative<BoundConstraint>(pair.enforcement)) return "vi";
   return std::holds_alternative<Uzawa>(pair.enforcement) ? "uzawa" : "semismooth";
 }
 
@@ -37,7 +38,7 @@ void add_friction_fields(const ContactSamples& sample, PointFields& points) {
   points.fields.push_back({.name = "tau_c", .values = sample.tau_c});
 }
 
-std::string multiplier_name(const ContactForm& contact) { return "multiplier:" + contact.pair().name; }
+std::string multiplier_name(const PairReport& contact) { return "multiplier:" + contact.pair().name; }
 
 } // namespace
 
@@ -236,6 +237,7 @@ nlohmann::ordered_json describe_scene(const Scene& scene) {
   effects["inertia"] = false;
   effects["unknown_multipliers"] = scene.layout->num_extra() > 0;
   effects["outer_loop"] = scene.multipliers != nullptr;
+  effects["bounded_unknowns"] = scene.bounds != nullptr;
   effects["loads"] = scene.loads != nullptr;
   nlohmann::ordered_json json;
   json["dim"] = mesh.dim;

@@ -104,6 +104,7 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
                             pair.enforcement = Uzawa{};
                             pair.alpha = uzawa.alpha;
                           },
+                          [&](const ViDeck&) { pair.enforcement = BoundConstraint{}; },
                           [&](const SemismoothDeck& semismooth) {
                             pair.enforcement = Semismooth{static_cast<int>(fields.size())};
                             pair.alpha = semismooth.alpha;
@@ -230,8 +231,16 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   }
   if (!scene->floating.empty()) forms.push_back(std::make_unique<SupportForm>(layout, floating, stiffness));
   std::vector<ContactForm*> uzawa;
+  std::vector<MortarForm*> bounded;
   for (auto& pair : pairs) {
     const Phase search("search");
+    if (std::holds_alternative<BoundConstraint>(pair.enforcement)) {
+      auto form = std::make_unique<MortarForm>(layout, std::move(pair));
+      scene->contacts.push_back(form.get());
+      bounded.push_back(form.get());
+      forms.push_back(std::move(form));
+      continue;
+    }
     auto form = std::make_unique<ContactForm>(layout, std::move(pair));
     scene->contacts.push_back(form.get());
     if (std::holds_alternative<Uzawa>(form->pair().enforcement)) uzawa.push_back(form.get());
@@ -239,6 +248,7 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   }
   if (!uzawa.empty()) scene->multipliers = std::make_unique<UzawaMultipliers>(mesh, uzawa);
   scene->problem = std::make_unique<Problem>(layout, std::move(forms), std::move(conditions.prescribed));
+  if (!bounded.empty()) scene->bounds = std::make_unique<MortarTransform>(*scene->problem, std::move(bounded));
   return scene;
 }
 

@@ -36,13 +36,15 @@ struct SegmentIntegration {
 };
 using Integration = std::variant<FacetIntegration, SegmentIntegration>;
 
-/// Where λ comes from: nowhere, an outer loop, or an unknown of the system (extra field number `field` of the layout).
+/// Where λ comes from: nowhere, an outer loop, an unknown of the system (extra field number `field` of the layout), or
+/// the force on a bound of the normal motion.
 struct Penalty {};
 struct Uzawa {};
 struct Semismooth {
   int field;
 };
-using Enforcement = std::variant<Penalty, Uzawa, Semismooth>;
+struct BoundConstraint {};
+using Enforcement = std::variant<Penalty, Uzawa, Semismooth, BoundConstraint>;
 
 /// Friction of a pair. Unknown tangential multipliers (`semismooth`) are the dim extra fields from `field` on.
 struct Friction {
