@@ -130,8 +130,8 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   AMT_PETSC(SNESSetFunction(snes_, residual_, evaluate_residual, this));
   AMT_PETSC(SNESSetJacobian(snes_, matrix_, matrix_, evaluate_tangent, this));
   AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
-  // PETSc takes a line search that gave up for convergence when its last step is shorter than stol |u|: any residual
-  // would pass where the residual has a minimum that is not zero.
+  // When a line search gives up, PETSc (3.18) compares the last step that it noted, which may be the short last one of
+  // an earlier solve, with stol |u|, and takes any residual for converged.
   AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
   if (const auto search = backtracking(snes_)) AMT_PETSC(SNESLineSearchBTGetAlpha(search, &sufficient_decrease_));
