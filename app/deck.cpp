@@ -163,12 +163,14 @@ ObjectRule<ContactDeck> contact_rule() {
   TaggedRule<decltype(ContactDeck::integration)> integration;
   integration
       .tag("facet", facet,
-           "Gauss points on the slave facets: cheap, but blind to where master facets end, so a uniform pressure comes "
-           "across with an error (1e-2 to 1e-4 between flat surfaces).")
+           "Gauss points on the slave facets: cheap, but blind to where master facets end, so a uniform pressure "
+           "between "
+           "flat surfaces comes across with an error of 1e-3 to 1e-1 at order 4.")
       .tag("segment", segment,
-           "Gauss points on the overlaps of slave facets with single master facets: a uniform pressure comes across "
-           "exactly, for five to fifty times the points. Take it for accurate pressures between meshes that do not "
-           "match, and where the slave is the coarser side. Needs a meshed master.",
+           "Gauss points on the overlaps of slave facets with single master facets: a uniform pressure between flat "
+           "surfaces comes across exactly. Take it for accurate pressures between meshes that do not match, above all "
+           "where the slave is the coarser side. Costs twice the points in 2D, five times in 3D, a dozen with cells of "
+           "order 2; Newton's iterations stay the same. Needs a meshed master.",
            "M. A. Puso, Int. J. Numer. Meth. Engng. 59 (2004) 315-336.");
   ObjectRule<ContactDeck> rule;
   rule.required("name", &ContactDeck::name, identifier("name of the pair in the results"), "Names the pair in results.")
