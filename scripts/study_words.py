@@ -164,8 +164,8 @@ def target_words(study, good, quantity):
         worse = dearer_and_worse(study, good, good[i], quantity, targets[-1])
         yield (f"{goal} cost{'s' * (len(targets) == 1)} least with {setting_text(good[i].variant.knobs)} "
                f"({percent(errors[i])}, {cost_text(good[i])})"
-               + (f" – by chance or at a price: {setting_text(worse.variant.knobs)} in the same sweep costs more and is off "
-                  f"by {percent(worse.errors[quantity.name])}" if worse else ""))
+               + (f" – by chance or at a price: {setting_text(worse.variant.knobs)} in the same sweep costs more and is "
+                  f"off by {percent(worse.errors[quantity.name])}" if worse else ""))
 
 
 def dearer_and_worse(study, outcomes, chosen, quantity, target):
