@@ -71,6 +71,8 @@ def read_title(results, say):
     try:
         with open(os.path.join(results, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
+        if not isinstance(summary, dict):
+            raise ValueError("it does not hold keys and values")
     except (OSError, ValueError) as error:
         say(f"no summary.json to read ({error}); pictures are titled by the directory")
         return os.path.basename(os.path.abspath(results))

@@ -3,7 +3,7 @@
 import math
 
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from figure_style import BLUE, INK, ORANGE, plt
 from study_analysis import median
@@ -34,7 +34,7 @@ def points(panel, outcomes, quantity, colour, marker, label):
 def plain_seconds(axis):
     """Times on a logarithmic axis as 0.5, 1, 2, 5, ..."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(ScalarFormatter())
+    axis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
     axis.set_minor_formatter(NullFormatter())
 
 
@@ -92,7 +92,7 @@ def knob_axis(panel, knob, values):
     numbers = [number(value) for value in values]
     panel.set_xlabel(short_name(knob))
     if None not in numbers:
-        if min(numbers) > 0.0 and max(numbers) > 2.0 * min(numbers):
+        if min(numbers) > 0.0 and max(numbers) > 1.5 * min(numbers):
             panel.set_xscale("log")
             panel.set_xticks(numbers, [short_value(value) for value in values], fontsize=7.5)
             panel.minorticks_off()

@@ -166,7 +166,8 @@ def measure(study, outcome, results):
 
 def compare_with_finest(study, outcomes):
     """Errors against the finest run of a sweep with Richardson's extrapolation. Returns, for each such quantity, the
-    reference {value, uncertainty, order or None, sweep}; nothing when the sweep's finest runs have failed."""
+    reference {value, uncertainty, order or None, sweep, closing: do the last runs get closer?}; nothing when all runs
+    of the sweep have failed."""
     references = {}
     for quantity in study.quantities:
         if not quantity.reference or quantity.reference[0] != "finest":
@@ -181,7 +182,10 @@ def compare_with_finest(study, outcomes):
         falling = number(values[0]) > number(values[-1])
         value, uncertainty, power = extrapolate([key if falling else 1.0 / key for key in order],
                                                 [runs[key] for key in order])
-        references[quantity.name] = {"value": value, "uncertainty": uncertainty, "order": power, "sweep": sweep}
+        last = [runs[key] for key in order[-3:]]
+        closing = len(last) < 3 or abs(last[2] - last[1]) <= abs(last[1] - last[0])
+        references[quantity.name] = {"value": value, "uncertainty": uncertainty, "order": power, "sweep": sweep,
+                                     "closing": closing}
         for outcome in outcomes:
             if quantity.name in outcome.values:
                 set_error(outcome, quantity, abs(outcome.values[quantity.name] - value), value)

@@ -129,9 +129,10 @@ def cheapest_words(study, outcomes, quantity, finest):
     kind = f"against the closed form {quantity.reference[1]}" if quantity.reference[0] == "exact" else ""
     if quantity.name in finest:
         found = finest[quantity.name]
+        why = "no order to extrapolate with" if found["closing"] else "which do not converge"
         kind = f"against {found['value']:.6g}, " + (
             f"extrapolated (Richardson) from the sweep '{found['sweep']}' with order {found['order']:.2f}"
-            if found["order"] else f"the finest run of the sweep '{found['sweep']}' (no order to extrapolate with)"
+            if found["order"] else f"the finest run of the sweep '{found['sweep']}' ({why})"
         ) + f", itself uncertain by {found['uncertainty']:.1e}"
     kind += f", relative to {quantity.scale}" if quantity.scale else ""
     what = "relative L2 error" if quantity.source[0] == "profile" else "relative error"
@@ -162,10 +163,10 @@ def target_words(study, good, quantity):
                    f"{setting_text(good[i].variant.knobs)} ({cost_text(good[i])})")
             continue
         worse = dearer_and_worse(study, good, good[i], quantity, targets[-1])
+        warning = (f" – by chance or at a price: {setting_text(worse.variant.knobs)} in the same sweep costs more "
+                   f"and is off by {percent(worse.errors[quantity.name])}") if worse else ""
         yield (f"{goal} cost{'s' * (len(targets) == 1)} least with {setting_text(good[i].variant.knobs)} "
-               f"({percent(errors[i])}, {cost_text(good[i])})"
-               + (f" – by chance or at a price: {setting_text(worse.variant.knobs)} in the same sweep costs more and is off "
-                  f"by {percent(worse.errors[quantity.name])}" if worse else ""))
+               f"({percent(errors[i])}, {cost_text(good[i])}){warning}")
 
 
 def dearer_and_worse(study, outcomes, chosen, quantity, target):

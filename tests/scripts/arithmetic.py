@@ -105,9 +105,15 @@ class Expressions(unittest.TestCase):
         np.testing.assert_allclose(found, [2.0, 1.6, 0.0], atol=1e-15)
         self.assertEqual(expressions.evaluate("-2^2 + min(3, 4)", {}), -1.0)
 
+    def test_integral(self):
+        found = expressions.evaluate("2*integral(sqrt(1 - (u/a)^2), u, -a, a)/a", {"a": 3.0})
+        self.assertAlmostEqual(found, np.pi, 12)  # area of the unit circle
+        self.assertAlmostEqual(expressions.evaluate("u + integral(u^3, u, 0, 2)", {"u": 5.0}), 9.0, 12)
+        self.assertEqual(expressions.names_in("u + integral(b*v, v, 0, c) + sqrt(pi)"), {"u", "b", "c"})
+
     def test_refused(self):
         for text, words in (("a + b", "unknown name 'b'"), ("sqr(4)", "Did you mean 'sqrt'"), ("a.real", "something else"),
-                            ("().__class__", "something else"), ("1 +", "not an expression"), ("1/0", "no value")):
+                            ("().__class__", "something else"), ("1 +", "not an expression"), ("integral(a, 2, 0, 1)", "function"), ("1/0", "no value")):
             with self.assertRaisesRegex(deck_edit.StudyError, words):
                 expressions.evaluate(text, {"a": 1.0})
 
