@@ -8,6 +8,7 @@ FORMULATIONS = {
     "semismooth": {"semismooth": {}},
     "uzawa": {"uzawa": {}},
     "penalty": {"penalty": {"alpha": 1e5}},
+    "vi": {"vi": {}},
 }
 
 
@@ -58,6 +59,10 @@ def formulations_2d(bench):
     run_elements(bench, "patch_2d", "quads", 1, ["uzawa", "penalty"])
 
 
+def vi_2d(bench):
+    run_elements(bench, "patch_2d", "quads", 1, ["vi"])
+
+
 def projection_2d(bench):
     """Projection along the slave's normal."""
     for label, changes in elements("quads"):
@@ -74,6 +79,6 @@ def formulations_3d(bench):
 
 
 CASES = {
-    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "projection": projection_2d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_2d")},
+    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "vi": vi_2d, "projection": projection_2d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_2d")},
     "patch_3d": {"elements": elements_3d, "formulations": formulations_3d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_3d")},
 }
