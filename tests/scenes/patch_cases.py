@@ -8,6 +8,7 @@ FORMULATIONS = {
     "semismooth": {"semismooth": {}},
     "uzawa": {"uzawa": {}},
     "penalty": {"penalty": {"alpha": 1e5}},
+    "vi": {"vi": {}},
 }
 
 
@@ -68,6 +69,10 @@ def formulations_2d(bench):
     run_elements(bench, "patch_2d", "quads", 1, ["uzawa", "penalty"])
 
 
+def vi_2d(bench):
+    run_elements(bench, "patch_2d", "quads", 1, ["vi"])
+
+
 def projection_2d(bench):
     """Projection along the slave's normal."""
     for label, changes in elements("quads"):
@@ -122,6 +127,6 @@ def segments_uzawa_3d(bench):
 
 
 CASES = {
-    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "projection": projection_2d, "segments": segments_2d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_2d")},
+    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "vi": vi_2d, "projection": projection_2d, "segments": segments_2d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_2d")},
     "patch_3d": {"elements": elements_3d, "formulations": formulations_3d, "segments": segments_3d, "segments_uzawa": segments_uzawa_3d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_3d")},
 }

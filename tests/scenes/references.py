@@ -73,6 +73,22 @@ def sphere_force_of_approach(approach, radius, materials, depths):
     return high
 
 
+def wave_closing_pressure(length, amplitude, E, nu):
+    """Mean pressure p* at which a rigid plane touches all of a wave amplitude (1 - cos(2 pi x / length)), [J] 13.7."""
+    return np.pi * E / (1.0 - nu**2) * amplitude / length
+
+
+def wave_half_width(mean, closing, length):
+    """Half-width a of the contact at each crest under a mean pressure, sin^2(pi a / length) = mean / p*, [J] 13.9."""
+    return length / np.pi * np.arcsin(np.sqrt(mean / closing))
+
+
+def wave_pressure(x, mean, closing, length):
+    """Pressure on a wave pressed by a rigid plane (H. M. Westergaard, J. Appl. Mech. 6 (1939) 49-53), [J] 13.8."""
+    inside = np.maximum(0.0, mean / closing - np.sin(np.pi * x / length) ** 2)
+    return np.where(np.asarray(x) < length / 2.0, 2.0 * mean * np.cos(np.pi * x / length) * np.sqrt(inside) / (mean / closing), 0.0)
+
+
 def flat_punch_pressure(x, force, a):
     """Pressure under a rigid flat punch of half-width a and `force` per length on a half-plane, [J] 2.64."""
     return force / (np.pi * np.sqrt(a**2 - np.asarray(x) ** 2))
