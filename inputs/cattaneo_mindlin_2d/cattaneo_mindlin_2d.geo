@@ -1,7 +1,7 @@
 // A block with a round face (radius R) on one with a flat face: each 2 L wide and L high, with a patch of nearly square
 // cells where they touch, at (0, 0). The theory knows a cylinder only by the curvature of its face.
 DefineConstant[
-  R = {50, Name "radius of the round face"},
+  R = {500, Name "radius of the round face"},
   L = {40, Name "half-width and height of each block"},
   patch = {1.0, Name "half-width and depth of the refined patch; larger than the contact half-width"},
   h = {0.0371395, Name "cell size in the patch of the lower block"},

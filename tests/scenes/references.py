@@ -27,6 +27,24 @@ def cattaneo_mindlin(x, a, limit, ratio):
     return c, limit * (ellipse(a) - c / a * ellipse(c))
 
 
+def best_linear(nodes, function, points=20):
+    """Values at `nodes` (ascending) of the continuous function, linear between them, that is nearest to `function` in L2,
+    and its distance, an integral over all nodes' span."""
+    place, weight = np.polynomial.legendre.leggauss(points)
+    half = 0.5 * np.diff(nodes)
+    at = (0.5 * (nodes[1:] + nodes[:-1]) + half * place[:, None]).T
+    weights, values = half[:, None] * weight, function(at)
+    shape = np.array([1.0 - place, 1.0 + place]) / 2.0
+    matrix, right = np.zeros((len(nodes), len(nodes))), np.zeros(len(nodes))
+    first = np.arange(len(half))
+    for i in range(2):
+        np.add.at(right, first + i, np.sum(weights * shape[i] * values, axis=1))
+        for j in range(2):
+            np.add.at(matrix, (first + i, first + j), np.sum(weights * shape[i] * shape[j], axis=1))
+    best = np.linalg.solve(matrix, right)
+    return best, np.sqrt(np.sum(weights * (np.interp(at, nodes, best) - values) ** 2))
+
+
 def sphere_contact(force, radius, modulus):
     """Contact radius a and peak pressure p0 of spheres under `force`, [J] 4.22 and 4.24."""
     a = np.cbrt(3.0 * force * radius / (4.0 * modulus))
