@@ -89,6 +89,119 @@ def cattaneo_mindlin_held(bench):
         bench.below(f"{name}: change of the shear traction / largest", change / largest, 1e-8)
 
 
+# --- a sphere pushed to and fro ---------------------------------------------------------------------------------------
+
+
+class PushedSphere:
+    """Forces of the whole sphere (the deck has half) over the displacement that the deck prescribes."""
+
+    def __init__(self, results):
+        self.history, constants = results.history, results.deck["constants"]
+        self.time, self.amplitude = self.history["time"], float(constants["D"])
+        self.moved = self.amplitude * 2 / np.pi * np.arcsin(np.sin(np.pi / 2 * np.maximum(self.time - 1.0, 0.0)))
+        self.force = 2.0 * self.history["contact_interface_force_x"]
+        self.normal = 2.0 * np.abs(self.history["contact_interface_force_z"])
+        law = results.deck["materials"]["rubber"]["elastic"]
+        E, nu = float(law["E"]), law["nu"]
+        self.a, _ = references.sphere_contact(self.normal[-1], 10.0, references.contact_modulus((E, nu)))
+        self.compliance = (2.0 - nu) * 2.0 * (1.0 + nu) / E
+
+    def between(self, begin, end):
+        return np.flatnonzero((self.time >= begin - 1e-9) & (self.time <= end + 1e-9))
+
+    def loop(self, begin, end):
+        """Area between the branches, and what friction dissipates meanwhile."""
+        rows = self.between(begin, end)
+        dissipated = 2.0 * np.sum(self.history["contact_interface_dissipation"][rows[1:]])
+        return abs(np.trapz(self.force[rows], self.moved[rows])), dissipated
+
+
+def mindlin_cycling(bench, changes=None, tolerance=0.05):
+    """Two cycles against Mindlin and Deresiewicz for the measured forces."""
+    results = bench.run("mindlin_sphere_cycling", changes)
+    sphere = PushedSphere(results)
+    at = {t: sphere.between(t, t)[0] for t in (2, 4, 6)}
+    amplitude, normal = 0.5 * (sphere.force[at[6]] - sphere.force[at[4]]), sphere.normal[-1]
+    bench.below("largest change of the normal force", np.ptp(sphere.normal[sphere.time >= 1.0]) / normal, 1e-3)
+    arguments = (normal, sphere.a, sphere.compliance, MU)
+    first, second = sphere.loop(2, 6), sphere.loop(6, 10)
+    label = f"Q*/(mu P) = {abs(amplitude) / (MU * normal):.3f}"
+    bench.close(f"{label}: area of the second loop", second[0],
+                references.mindlin_loop_energy(abs(amplitude), *arguments), tolerance)
+    bench.close(f"{label}: displacement at Q*", sphere.amplitude,
+                references.mindlin_displacement(abs(amplitude), *arguments), 0.03)
+    difference = np.abs(sphere.force[sphere.between(2, 6)] - sphere.force[sphere.between(6, 10)]).max()
+    bench.below("largest difference of the two cycles / Q*", difference / abs(amplitude), 1e-3)
+    bench.close("area of the second loop against the first", second[0], first[0], 1e-3)
+    # The sum of increments takes the traction at their ends, which is on the high side while it grows.
+    bench.close("dissipation in the second cycle against the loop's area", second[1], second[0], 0.03)
+    # Masing: the way back starts where a first push to the other side would end.
+    bench.close("force at -D against that at +D", sphere.force[at[4]], -sphere.force[at[2]], 1e-3)
+    c = np.sqrt(2.0 * sphere.history["contact_interface_stick_area"][at[2]] / np.pi)
+    exact = sphere.a * (1.0 - abs(sphere.force[at[2]]) / (MU * normal)) ** (1.0 / 3.0)
+    parameters = {"patch": 0.17, **results.deck["mesh"]["parameters"]}
+    bench.below("radius of the stick zone, in cells", abs(c - exact) / (parameters["patch"] / parameters["n"]), 1.0)
+
+
+# --- a stack of plates ------------------------------------------------------------------------------------------------
+
+PAIRS = ("lower", "middle", "upper")
+
+
+def slid_stack(bench, label, results):
+    """Everything slides: each pair passes on the whole weight P, and mu P against its motion; every plate is in
+    balance; no point is outside Coulomb's cone."""
+    P, history = float(results.deck["constants"]["P"]), results.history
+    mu = {pair["name"]: pair["friction"]["coulomb"]["mu"] for pair in results.deck["contact"]}
+    lower, middle, upper = (mu[pair] * P for pair in PAIRS)
+    # on the slave, the plate above; plate 2 goes towards +x, plate 4 towards +y
+    expected = {"lower": (-lower, 0, P), "middle": (middle, 0, P), "upper": (0, -upper, P)}
+    for pair, force in expected.items():
+        found = np.array([history[f"contact_{pair}_force_{c}"][-1] for c in "xyz"])
+        bench.below(f"{label}, {pair}: error of the force / P", np.linalg.norm(found - force) / P, 3e-5)
+        points = results.points[pair]
+        slipping, pressed = points["status"] == 2, points["pressure"] > 0.0
+        bench.below(f"{label}, {pair}: pressed points that do not slide", np.sum(pressed & ~slipping), 0)
+        shear, bound = np.linalg.norm(points["shear"], axis=1), mu[pair] * points["pressure"]
+        bench.below(f"{label}, {pair}: distance from Coulomb's cone", np.abs(shear - bound).max() / bound.max(), 1e-10)
+    forces = {pair: [history[f"contact_{pair}_force_{c}"] for c in "xyz"] for pair in PAIRS}
+    held = {2: "ends_2", 3: "ends_3", 4: "top_4"}
+    for plate, below, above in ((2, "lower", "middle"), (3, "middle", "upper"), (4, "upper", None)):
+        for i, c in enumerate("xy"):
+            sum_ = forces[below][i] - (forces[above][i] if above else 0.0) + history[f"reaction_{held[plate]}_{c}"]
+            bench.below(f"{label}, plate {plate}: forces along {c} out of balance / P", np.abs(sum_).max() / P, 1e-8)
+
+
+def stack(bench):
+    for name, enforce in {"semismooth": {"semismooth": {}}, **common_checks.OTHERS}.items():
+        slid_stack(bench, name, bench.run("stack_with_friction_3d", {"contact.*.enforce": enforce}))
+
+
+def stack_ranks(bench):
+    """Displacements and tractions on 2 and 3 ranks equal those on 1 to 1e-8 of their largest."""
+    reference = bench.run("stack_with_friction_3d", ranks=1)
+
+    def in_order(results, pair, field):
+        places = np.round(results.points[pair]["places"], 9)
+        return results.points[pair][field][np.lexsort(places.T)]
+
+    for ranks in (2, 3):
+        results = bench.run("stack_with_friction_3d", ranks=ranks)
+        exact = reference.nodal_sorted("displacement")
+        error = np.abs(results.nodal_sorted("displacement") - exact).max() / np.abs(exact).max()
+        bench.below(f"{ranks} ranks: displacement", error, 1e-8)
+        for pair in PAIRS:
+            for field in ("pressure", "shear"):
+                exact = in_order(reference, pair, field)
+                error = np.abs(in_order(results, pair, field) - exact).max() / np.abs(exact).max()
+                bench.below(f"{ranks} ranks: {field} of {pair}", error, 1e-8)
+
+
 CASES = {
     "cattaneo_mindlin_2d": {"reference": cattaneo_mindlin, "convergence": cattaneo_mindlin_convergence, "held": cattaneo_mindlin_held},
+    "mindlin_sphere_cycling": {
+        "reference": mindlin_cycling,
+        "fine": lambda bench: mindlin_cycling(bench, {"mesh.parameters.n": 8}, 0.03),
+    },
+    "stack_with_friction_3d": {"reference": stack, "ranks": stack_ranks},
 }

@@ -51,6 +51,21 @@ def sphere_contact(force, radius, modulus):
     return a, 3.0 * force / (2.0 * np.pi * a**2)
 
 
+def mindlin_displacement(force, normal, a, compliance, mu):
+    """Tangential displacement of a sphere on a half-space whose tangential force grows to `force`; `compliance` is the
+    sum over the elastic bodies of (2 - nu) / G. [J] 7.41 to 7.44 (R. D. Mindlin 1949)."""
+    return 3.0 * mu * normal / (16.0 * a) * compliance * (1.0 - (1.0 - force / (mu * normal)) ** (2.0 / 3.0))
+
+
+def mindlin_loop_energy(amplitude, normal, a, compliance, mu):
+    """Work done in a cycle of the tangential force between +- amplitude: R. D. Mindlin and H. Deresiewicz (1953), J. Appl.
+    Mech. 20, 327-344; the area between mindlin_displacement's branches after Masing's rule
+    delta = delta* - 2 delta((Q* - Q) / 2)."""
+    k = amplitude / (mu * normal)
+    share = 1.0 - (1.0 - k) ** (5.0 / 3.0) - 5.0 * k / 6.0 * (1.0 + (1.0 - k) ** (2.0 / 3.0))
+    return 9.0 * (mu * normal) ** 2 / (10.0 * a) * compliance * share
+
+
 def hertz_pressure(r, a, p0):
     """p0 sqrt(1 - (r/a)^2) inside the contact, zero outside: line and point contact alike."""
     return p0 * np.sqrt(np.maximum(0.0, 1.0 - (np.asarray(r) / a) ** 2))
