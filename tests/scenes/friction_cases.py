@@ -197,11 +197,42 @@ def stack_ranks(bench):
                 bench.below(f"{ranks} ranks: {field} of {pair}", error, 1e-8)
 
 
+# --- the path matters -------------------------------------------------------------------------------------------------
+
+
+def press_and_shift(bench, press, shift):
+    """The scene with these increments (anything that a step's key `increments` takes)."""
+    return bench.run("cylinder_press_shear_path", {"steps.0.increments": press, "steps.1.increments": shift}, ranks=1)
+
+
+def path_distance(results, reference, time):
+    """L2 of the difference of the shear tractions at `time` / L2 of the bound mu p."""
+    (found, exact) = ({k: v[np.lexsort(np.round(points["places"], 9).T)] for k, v in points.items()}
+                      for points in (run.at(time).points["interface"] for run in (results, reference)))
+    difference = np.sum(exact["weight"] * np.sum((found["shear"] - exact["shear"]) ** 2, axis=1))
+    return np.sqrt(difference / np.sum(exact["weight"] * (MU * exact["pressure"]) ** 2))
+
+
+def press_shear_path(bench):
+    """Increments of 1/100 are near the limit of a fine path; 1 and 2 are far off, in the shear traction and in how much
+    of the contact sticks, although their forces are in balance just as well."""
+    fine = press_and_shift(bench, 100, 100)
+    few, some, more = (press_and_shift(bench, *increments) for increments in ((1, 2), (10, 10), (30, 30)))
+    for time, name in ((1.0, "pressed"), (2.0, "shifted")):
+        errors = [path_distance(results, fine, time) for results in (few, some, more)]
+        print(f"     {name}: distance from the fine path {', '.join(f'{error:.3e}' for error in errors)}")
+        bench.below(f"{name}: 0.1 / distance of the large increments from the fine path", 0.1 / errors[0], 1.0)
+        bench.below(f"{name}: distance of increments of 1/30", errors[2], 0.005)
+        # first order against the limit of a fine path, of which 1/100 stands 1/100 away: 2.33 / 9
+        bench.below(f"{name}: distance of 1/30 over that of 1/10", errors[2] / errors[1], (1 / 30 - 1 / 100) / (1 / 10 - 1 / 100) * 1.2)
+
+
 CASES = {
     "cattaneo_mindlin_2d": {"reference": cattaneo_mindlin, "convergence": cattaneo_mindlin_convergence, "held": cattaneo_mindlin_held},
     "mindlin_sphere_cycling": {
         "reference": mindlin_cycling,
         "fine": lambda bench: mindlin_cycling(bench, {"mesh.parameters.n": 8}, 0.03),
     },
+    "cylinder_press_shear_path": {"reference": press_shear_path},
     "stack_with_friction_3d": {"reference": stack, "ranks": stack_ranks},
 }
