@@ -38,6 +38,8 @@ void add_friction_fields(const ContactSamples& sample, PointFields& points) {
   points.fields.push_back({.name = "tau_c", .values = sample.tau_c});
 }
 
+bool has_rigid_master(const PairReport& contact) { return std::holds_alternative<RigidMaster>(contact.pair().master); }
+
 std::string multiplier_name(const PairReport& contact) { return "multiplier:" + contact.pair().name; }
 
 } // namespace
@@ -50,6 +52,9 @@ std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledge
       columns.push_back("reaction_" + reaction.group + "_" + axes[c]);
   for (const auto& tied : scene.layout->tied())
     columns.push_back("displacement_" + tied.group + "_" + axes[tied.component]);
+  for (const auto* contact : scene.contacts)
+    for (int c = 0; has_rigid_master(*contact) && c < d; ++c)
+      columns.push_back("displacement_" + contact->pair().name + "_master_" + axes[c]);
   for (const auto* contact : scene.contacts) {
     const auto prefix = "contact_" + contact->pair().name + "_";
     for (int c = 0; c < d; ++c)
@@ -74,6 +79,11 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
     row.insert(row.end(), reaction.force.begin(), reaction.force.begin() + d);
   for (std::size_t i = 0; i < scene.layout->tied().size(); ++i)
     row.push_back(ledger.tied_displacements()[i]);
+  for (const auto* contact : scene.contacts)
+    if (has_rigid_master(*contact)) {
+      const auto shift = contact->rigid_shift();
+      row.insert(row.end(), shift.begin(), shift.begin() + d);
+    }
   for (std::size_t i = 0; i < totals.size(); ++i) {
     const auto& pair = totals[i];
     row.insert(row.end(), pair.force.begin(), pair.force.begin() + d);

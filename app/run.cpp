@@ -42,7 +42,7 @@ class Run {
   SolveOutcome solve_increment(double target);
   /// Exit status of the step, status_certified to go on.
   int march_step(std::size_t step);
-  void accept(std::size_t step, const SolveOutcome& outcome, double next_increment, bool last);
+  void accept(std::size_t step, const SolveOutcome& outcome, double next_increment, bool step_ends);
   void write_checkpoint_file(std::size_t step, double next_increment);
   void progress(const std::string& step, const SolveOutcome& outcome, const std::vector<ContactTotals>& totals,
                 bool certified);
@@ -212,13 +212,12 @@ int Run::march_step(std::size_t step) {
       continue;
     }
     control.accepted(outcome.newton);
-    const bool last = control.finished() && step + 1 == scene_->deck.steps.size();
-    accept(step, outcome, control.increment(), last);
+    accept(step, outcome, control.increment(), control.finished());
   }
   return status_certified;
 }
 
-void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_increment, bool last) {
+void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_increment, bool step_ends) {
   ++increments_;
   ledger_->accept(unknowns_);
   const auto state = scene_->problem->state_at(unknowns_);
@@ -241,7 +240,7 @@ void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_incr
   history_->row(
       history_row(*scene_, *ledger_, last_totals_, {.time = time, .outcome = outcome, .certified = certified}));
   progress(scene_->deck.steps[step].name.value, outcome, last_totals_, certified);
-  if (last || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns_, samples);
+  if (step_ends || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns_, samples);
   write_checkpoint_file(step, next_increment);
 }
 

@@ -2,9 +2,16 @@
 // master and the increment of tangential motion since the last accepted state is
 //   Δg_t = P Δ(u_slave − u_master − rigid shift),  P = 1 − n ⊗ n,
 // convective and frame-indifferent to first order as the whole of small kinematics is. The shear traction follows from
-//   q = P λ_t + ε Δg_t,  σ_t = return_map(q, p = −σ_n),  virtual work ∫ σ_t · δg_t,
-// with the ε of the normal part. λ_t is the last accepted traction of the point (penalty), or Σ N_i λ_i with nodal
-// vectors held (Uzawa) or unknown (semismooth).
+//   q = P (σ_t,old + Δλ_t) + ε Δg_t,  σ_t = return_map(q, p = −σ_n),  virtual work ∫ σ_t · δg_t,
+// with the ε of the normal part, the traction σ_t,old of the point at the last accepted state, and Δλ_t the increment
+// of Σ N_i λ_i since then: of nodal vectors held (Uzawa) or unknown (semismooth); zero for penalty.
+//
+// Why increments of λ_t and not λ_t itself: λ_i is an average over the facets around node i, so λ_t differs from the
+// σ_t that it averages by about h² λ_t'' / 6. With q = P λ_t + ε Δg_t a point that sticks needs ε Δg_t = σ_t − λ_t to
+// carry its traction, in every increment anew, also where nothing changes: surfaces that stick would creep, the farther
+// the more increments are taken. With q as above Δλ_t = 0 and Δg_t = 0 solve an increment without load, and the
+// differences add up to h² λ_t'' / (6 ε), as those of the gap do. Both agree in the first increment, and summed over
+// increments the nodal equation below is the same.
 //
 // Nodal λ_i have dim Cartesian components: no tangent basis has to be chosen at nodes, where the surface has no normal,
 // or agreed upon between ranks. As for the normal part they are the lumped projection of the traction,
@@ -89,14 +96,17 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
 
 // --- state at a point ------------------------------------------------------------------------------------------------
 
-TangentVector TangentialPart::multiplier_at(const ContactPoint& point) const {
+/// Δλ_t, force per area.
+TangentVector TangentialPart::multiplier_increment(const ContactPoint& point) const {
   const auto nodes = points_.slave().facet(point.facet);
   const auto shape = points_.multiplier_shape(point);
-  TangentVector lambda{};
+  TangentVector increment{};
   for (std::size_t a = 0; a < shape.size(); ++a)
-    for (int c = 0; c < layout_.dim(); ++c)
-      lambda[c] += shape[a] * multipliers_[c][position_[nodes[a]]];
-  return lambda;
+    for (int c = 0; c < layout_.dim(); ++c) {
+      const auto at = position_[nodes[a]];
+      increment[c] += shape[a] * (multipliers_[c][at] - multipliers_old_[c][at]);
+    }
+  return increment;
 }
 
 void TangentialPart::fetch_multipliers(const State& state) {
@@ -148,8 +158,10 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
       continue;
     }
     increment_[i] = tangential(moved, point.normal);
-    const auto lambda = has_multipliers() ? multiplier_at(point) : old.traction;
-    const auto held = tangential(lambda, point.normal);
+    auto carried = multiplier_increment(point);
+    for (int c = 0; c < 3; ++c)
+      carried[c] += old.traction[c];
+    const auto held = tangential(carried, point.normal);
     for (int c = 0; c < 3; ++c)
       trial[c] = held[c] + point.epsilon * increment_[i][c];
     pressed_[i] = sigma[i] < 0.0;

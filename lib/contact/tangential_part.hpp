@@ -78,7 +78,7 @@ class TangentialPart {
   };
   bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
   bool has_multipliers() const { return !std::holds_alternative<Penalty>(pair_.enforcement); }
-  TangentVector multiplier_at(const ContactPoint& point) const;
+  TangentVector multiplier_increment(const ContactPoint& point) const;
   void fetch_multipliers(const State& state);
   void find_factors(double time);
   void jump_variation(const ContactPoint& point, const ContactBlock& layout, std::span<double> motion) const;

@@ -27,10 +27,43 @@ def cattaneo_mindlin(x, a, limit, ratio):
     return c, limit * (ellipse(a) - c / a * ellipse(c))
 
 
+def best_linear(nodes, function, points=20):
+    """Values at `nodes` (ascending) of the continuous function, linear between them, that is nearest to `function` in L2,
+    and its distance, an integral over all nodes' span."""
+    place, weight = np.polynomial.legendre.leggauss(points)
+    half = 0.5 * np.diff(nodes)
+    at = (0.5 * (nodes[1:] + nodes[:-1]) + half * place[:, None]).T
+    weights, values = half[:, None] * weight, function(at)
+    shape = np.array([1.0 - place, 1.0 + place]) / 2.0
+    matrix, right = np.zeros((len(nodes), len(nodes))), np.zeros(len(nodes))
+    first = np.arange(len(half))
+    for i in range(2):
+        np.add.at(right, first + i, np.sum(weights * shape[i] * values, axis=1))
+        for j in range(2):
+            np.add.at(matrix, (first + i, first + j), np.sum(weights * shape[i] * shape[j], axis=1))
+    best = np.linalg.solve(matrix, right)
+    return best, np.sqrt(np.sum(weights * (np.interp(at, nodes, best) - values) ** 2))
+
+
 def sphere_contact(force, radius, modulus):
     """Contact radius a and peak pressure p0 of spheres under `force`, [J] 4.22 and 4.24."""
     a = np.cbrt(3.0 * force * radius / (4.0 * modulus))
     return a, 3.0 * force / (2.0 * np.pi * a**2)
+
+
+def mindlin_displacement(force, normal, a, compliance, mu):
+    """Tangential displacement of a sphere on a half-space whose tangential force grows to `force`; `compliance` is the
+    sum over the elastic bodies of (2 - nu) / G. [J] 7.41 to 7.44 (R. D. Mindlin 1949)."""
+    return 3.0 * mu * normal / (16.0 * a) * compliance * (1.0 - (1.0 - force / (mu * normal)) ** (2.0 / 3.0))
+
+
+def mindlin_loop_energy(amplitude, normal, a, compliance, mu):
+    """Work done in a cycle of the tangential force between +- amplitude: R. D. Mindlin and H. Deresiewicz (1953), J. Appl.
+    Mech. 20, 327-344; the area between mindlin_displacement's branches after Masing's rule
+    delta = delta* - 2 delta((Q* - Q) / 2)."""
+    k = amplitude / (mu * normal)
+    share = 1.0 - (1.0 - k) ** (5.0 / 3.0) - 5.0 * k / 6.0 * (1.0 + (1.0 - k) ** (2.0 / 3.0))
+    return 9.0 * (mu * normal) ** 2 / (10.0 * a) * compliance * share
 
 
 def hertz_pressure(r, a, p0):
