@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace amontons {
 
@@ -17,7 +18,8 @@ constexpr double overlap_tolerance = 1e-9;
 Ledger::Ledger(Scene& scene)
     : scene_(scene), external_(scene.layout->new_vector()), external_old_(scene.layout->new_vector()),
       unknowns_old_(scene.layout->new_vector()), work_(scene.layout->new_vector()),
-      rigid_force_old_(scene.contacts.size()), rigid_shift_old_(scene.contacts.size()) {
+      rigid_force_old_(scene.contacts.size()), rigid_shift_old_(scene.contacts.size()),
+      dissipated_(scene.contacts.size()) {
   for (const auto& condition : scene.problem->prescribed())
     if (std::none_of(reactions_.begin(), reactions_.end(),
                      [&](const auto& known) { return known.group == condition.group; }))
@@ -121,7 +123,7 @@ void Ledger::accept(Vec unknowns) {
     const bool is_rigid = std::holds_alternative<RigidMaster>(contact.pair().master);
     if (!is_rigid && !contact.tangential()) continue;
     const auto totals = contact.totals(state);
-    dissipated_energy_ += totals.dissipation;
+    dissipated_[i] += totals.dissipation;
     here[1] += totals.path_error;
     if (!is_rigid) continue;
     const auto& force = totals.force;
@@ -135,7 +137,7 @@ void Ledger::accept(Vec unknowns) {
     rigid_shift_old_[i] = shift;
   }
   if (initial_overlap_ && !opened_)
-    external_work_ = stored_energy_ + dissipated_energy_;
+    external_work_ = stored_energy_ + dissipated_energy();
   else {
     external_work_ += here[0];
     work_uncertainty_ += here[1];
@@ -148,19 +150,36 @@ void Ledger::accept(Vec unknowns) {
   AMT_PETSC(VecCopy(unknowns, unknowns_old_));
 }
 
-void Ledger::restore(Vec unknowns, double work, double uncertainty) {
-  opened_ = true;
-  find_external_forces(unknowns);
-  external_work_ = work;
-  work_uncertainty_ = uncertainty;
-  stored_energy_ = scene_.problem->stored_energy(unknowns);
-  const auto state = scene_.problem->state_at(unknowns);
-  for (std::size_t i = 0; i < scene_.contacts.size(); ++i) {
-    rigid_force_old_[i] = scene_.contacts[i]->totals(state).force;
-    rigid_shift_old_[i] = scene_.contacts[i]->rigid_shift();
+double Ledger::dissipated_energy() const { return std::accumulate(dissipated_.begin(), dissipated_.end(), 0.0); }
+
+void Ledger::save(Checkpoint& checkpoint) const {
+  const auto& mesh = scene_.mesh;
+  NodalArray forces{mesh.dim, std::vector<double>(std::size_t(mesh.num_local()) * mesh.dim)};
+  scene_.layout->gather_displacement(external_old_, forces.values); // that of a tied group at all its nodes
+  checkpoint.nodal["external_force"] = std::move(forces);
+  checkpoint.global["work"] = {external_work_, work_uncertainty_, stored_energy_};
+  checkpoint.global["dissipated"] = dissipated_;
+  auto& rigid = checkpoint.global["rigid_masters"];
+  for (std::size_t i = 0; i < rigid_force_old_.size(); ++i) {
+    rigid.insert(rigid.end(), rigid_force_old_[i].begin(), rigid_force_old_[i].end());
+    rigid.insert(rigid.end(), rigid_shift_old_[i].begin(), rigid_shift_old_[i].end());
   }
-  AMT_PETSC(VecCopy(external_, external_old_));
+}
+
+void Ledger::restore(const Checkpoint& checkpoint, Vec unknowns) {
+  opened_ = true;
+  scene_.layout->put_displacement(checkpoint.nodal.at("external_force").values, external_old_);
   AMT_PETSC(VecCopy(unknowns, unknowns_old_));
+  const auto& work = checkpoint.global.at("work");
+  external_work_ = work.at(0);
+  work_uncertainty_ = work.at(1);
+  stored_energy_ = work.at(2);
+  dissipated_ = checkpoint.global.at("dissipated");
+  const auto& rigid = checkpoint.global.at("rigid_masters");
+  for (std::size_t i = 0; i < rigid_force_old_.size(); ++i) {
+    std::copy_n(rigid.begin() + 6 * static_cast<std::ptrdiff_t>(i), 3, rigid_force_old_[i].begin());
+    std::copy_n(rigid.begin() + 6 * static_cast<std::ptrdiff_t>(i) + 3, 3, rigid_shift_old_[i].begin());
+  }
 }
 
 } // namespace amontons

@@ -37,8 +37,6 @@ void add_friction_fields(const ContactSamples& sample, PointFields& points) {
   points.fields.push_back({.name = "tau_c", .values = sample.tau_c});
 }
 
-std::string multiplier_name(const ContactForm& contact) { return "multiplier:" + contact.pair().name; }
-
 } // namespace
 
 std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledger) {
@@ -131,60 +129,6 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
       step.points.push_back(std::move(points));
     }
   writer.write(step);
-}
-
-std::string run_identity(const Scene& scene) {
-  std::string identity;
-  for (const auto& [body, material] : scene.deck.bodies)
-    identity += body + "=" + material.value + ";";
-  for (const auto& law : scene.mesh.bodies)
-    identity += law + ";";
-  for (std::size_t b = 0; b < scene.mesh.bodies.size(); ++b)
-    identity += formatted("%.17g;", scene.bulk->law(static_cast<std::int32_t>(b)).stiffness());
-  for (const auto* contact : scene.contacts)
-    identity += contact->pair().name + ":" + contact->pair().slave + ";";
-  return identity;
-}
-
-Checkpoint make_checkpoint(const Scene& scene, const Ledger& ledger, Vec unknowns) {
-  const auto state = scene.problem->state_at(unknowns);
-  Checkpoint checkpoint;
-  checkpoint.time = state.time;
-  checkpoint.nodal["displacement"] = {scene.mesh.dim, {state.displacement.begin(), state.displacement.end()}};
-  for (const auto* contact : scene.contacts) {
-    if (std::holds_alternative<Penalty>(contact->pair().enforcement)) continue;
-    NodalArray multipliers{1, std::vector<double>(scene.mesh.num_local(), 0.0)};
-    for (std::size_t i = 0; i < contact->nodes().nodes.size(); ++i)
-      multipliers.values[contact->nodes().nodes[i]] = contact->multipliers()[i];
-    checkpoint.nodal[multiplier_name(*contact)] = std::move(multipliers);
-  }
-  checkpoint.global["work"] = {ledger.external_work(), ledger.work_uncertainty()};
-  return checkpoint;
-}
-
-void restore_unknowns(Scene& scene, const Checkpoint& checkpoint, Vec unknowns) {
-  const auto& layout = *scene.layout;
-  const int d = layout.dim();
-  const auto& displacement = checkpoint.nodal.at("displacement").values;
-  VecArray values(unknowns);
-  const auto put = [&](PetscInt equation, double value) {
-    const PetscInt local = equation - layout.first_equation();
-    if (local >= 0 && local < layout.num_owned()) values[local] = value;
-  };
-  for (std::int32_t node = 0; node < scene.mesh.num_local(); ++node)
-    for (int c = 0; c < d; ++c)
-      put(layout.equation(node, c), displacement[std::size_t(node) * d + c]);
-  for (auto* contact : scene.contacts) {
-    if (std::holds_alternative<Penalty>(contact->pair().enforcement)) continue;
-    const auto& stored = checkpoint.nodal.at(multiplier_name(*contact)).values;
-    std::vector<double> multipliers;
-    for (const auto node : contact->nodes().nodes) {
-      multipliers.push_back(stored[node]);
-      if (const auto* unknown = std::get_if<Semismooth>(&contact->pair().enforcement))
-        put(layout.extra_equation(unknown->field, node), stored[node] / contact->multiplier_scale());
-    }
-    contact->hold_multipliers(std::move(multipliers));
-  }
 }
 
 nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds) {

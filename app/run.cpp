@@ -10,6 +10,7 @@
 #include "output/results_directory.hpp"
 #include "output/summary.hpp"
 #include "report.hpp"
+#include "restart.hpp"
 #include "scene.hpp"
 #include "solve/step_control.hpp"
 #include "solve/uzawa.hpp"
@@ -98,12 +99,6 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments) : comm_(comm), arguments_
 }
 
 void Run::restart() {
-  for (const auto* contact : scene_->contacts)
-    if (contact->tangential())
-      throw UserError(
-          "--restart: the contact pair '" + contact->pair().name +
-          "' has friction, whose history at the points of the surface the checkpoint does not hold. Run the "
-          "deck from its start.");
   const auto checkpoint = read_checkpoint(scene_->mesh, *arguments_.restart, run_identity(*scene_));
   // By time and not by number: the deck may have got more or longer steps since.
   const auto& steps = scene_->deck.steps;
@@ -113,12 +108,7 @@ void Run::restart() {
   resume_increment_ = checkpoint.next_increment;
   resume_time_ = checkpoint.time;
   increments_ = checkpoint.increment;
-  restore_unknowns(*scene_, checkpoint, unknowns_);
-  scene_->problem->begin_increment(checkpoint.time, unknowns_);
-  const auto residual = scene_->layout->new_vector();
-  scene_->problem->residual(unknowns_, residual);
-  ledger_->restore(unknowns_, checkpoint.global.at("work")[0], checkpoint.global.at("work")[1]);
-  scene_->problem->commit(unknowns_);
+  restore_state(*scene_, *ledger_, checkpoint, unknowns_);
   AMT_PETSC(VecCopy(unknowns_, accepted_));
 }
 
@@ -238,7 +228,6 @@ void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_incr
 }
 
 void Run::write_checkpoint_file(std::size_t step, double next_increment) {
-  scene_->problem->state_at(unknowns_);
   auto checkpoint = make_checkpoint(*scene_, *ledger_, unknowns_);
   checkpoint.step = static_cast<int>(step);
   checkpoint.increment = increments_;

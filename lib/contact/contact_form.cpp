@@ -372,6 +372,19 @@ void ContactForm::roll_back() {
   assembled_ = false;
 }
 
+ContactHistory ContactForm::accepted() const {
+  ContactHistory history;
+  history.multipliers = multipliers_old_;
+  if (tangential_) tangential_->save(history);
+  return history;
+}
+
+void ContactForm::restore(const ContactHistory& history) {
+  multipliers_ = multipliers_old_ = history.multipliers;
+  if (tangential_) tangential_->restore(history);
+  assembled_ = false;
+}
+
 void ContactForm::hold_multipliers(std::vector<double> multipliers) { multipliers_ = std::move(multipliers); }
 
 void ContactForm::multiplier_defect(const State& state, std::vector<double>& defect, std::vector<double>& mass) {

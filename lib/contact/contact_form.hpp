@@ -45,11 +45,17 @@ class ContactForm : public Form {
   bool coupling_changed(const State& state) override;
   void commit(const State& state) override;
   void roll_back() override;
+  /// A ContactHistory.
+  std::any history() const override { return accepted(); }
+  void restore(const std::any& history) override { restore(std::any_cast<const ContactHistory&>(history)); }
+  ContactHistory accepted() const;
+  void restore(const ContactHistory& history);
   double stored_energy(const State& state) override;
   bool tangent_is_symmetric() const override { return !tangential_; }
 
   const ContactPair& pair() const { return pair_; }
   const NodeField& nodes() const { return nodes_; }
+  const ContactPoints& points() const { return points_; }
 
   /// Traction per unknown multiplier of the layout's extra field (`semismooth`).
   double multiplier_scale() const { return scale_; }

@@ -323,6 +323,18 @@ void TangentialPart::commit(const State& state) {
 
 void TangentialPart::roll_back() { multipliers_ = multipliers_old_; }
 
+void TangentialPart::save(ContactHistory& history) const {
+  history.time = accepted_time_;
+  history.tangential_multipliers = multipliers_old_;
+  history.points = history_;
+}
+
+void TangentialPart::restore(const ContactHistory& history) {
+  accepted_time_ = history.time;
+  multipliers_ = multipliers_old_ = history.tangential_multipliers;
+  history_ = history.points;
+}
+
 std::vector<std::vector<double>> TangentialPart::multiplier_defect() const {
   std::vector<std::vector<double>> defect(multipliers_.size(), std::vector<double>(nodes_.nodes.size(), 0.0));
   const auto& points = points_.points();
