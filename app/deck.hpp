@@ -102,6 +102,7 @@ struct AutoIncrements {
   double smallest = 1e-4; // fraction of the step below which the run gives up
   double largest = 1.0;
   int target_iterations = 8; // Newton iterations at which the increment is kept; fewer: grow, more: shrink
+  std::optional<double> path_tolerance; // of the path error of the whole step; absent: not measured
 };
 using IncrementsDeck = std::variant<int, AutoIncrements>;
 
@@ -142,6 +143,7 @@ struct Deck {
   std::map<std::string, Located<VectorDeck>> body_force;
   std::vector<ContactDeck> contact;
   std::vector<StepDeck> steps;
+  bool estimate_path_error = false;
   CertificateDeck certificate;
   OutputDeck output;
   std::map<std::string, std::string> petsc; // option name without dash -> value
@@ -149,6 +151,9 @@ struct Deck {
   /// 2 or 3.
   int dim() const { return space_dim(space); }
 };
+
+/// Does any increment of the run need the comparison with its halves?
+bool measures_path(const Deck& deck);
 
 struct Shape;
 

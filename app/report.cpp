@@ -57,6 +57,7 @@ std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledge
     for (const char* quantity : {"stick_area", "slip_area", "dissipation"})
       columns.push_back(prefix + quantity);
   }
+  if (measures_path(scene.deck)) columns.emplace_back("path_error");
   for (const char* quantity : {"energy_stored", "energy_dissipated", "energy_external_work", "newton", "linear",
                                "outer", "residual", "certified"})
     columns.emplace_back(quantity);
@@ -77,6 +78,7 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
     row.insert(row.end(), {pair.area, pair.max_pressure, pair.largest_penetration});
     if (scene.contacts[i]->tangential()) row.insert(row.end(), {pair.stick_area, pair.slip_area, pair.dissipation});
   }
+  if (measures_path(scene.deck)) row.push_back(report.path_error);
   row.insert(row.end(), {ledger.stored_energy(), ledger.dissipated_energy(), ledger.external_work(),
                          double(report.outcome.newton), double(report.outcome.linear), double(report.outcome.outer),
                          report.outcome.residual, report.certified ? 1.0 : 0.0});

@@ -16,6 +16,7 @@ namespace amontons {
 struct IncrementReport {
   double time = 0.0;
   SolveOutcome outcome;
+  double path_error = 0.0; // of the increment that ends here; zero if not measured
   bool certified = false;
 };
 
