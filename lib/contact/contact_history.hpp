@@ -12,14 +12,15 @@ namespace amontons {
 
 /// Friction at a point of the slave surface. All vectors are Cartesian, so nothing depends on how facets are numbered.
 struct PointHistory {
-  TangentVector traction{};     // what the slave exerts, stress
-  std::array<double, 3> jump{}; // u_slave − u_master − rigid shift, length
-  FrictionState state{};        // of the law
+  TangentVector traction{};       // what the slave exerts, stress
+  std::array<double, 3> jump{};   // u_slave − u_master − rigid shift, length
+  std::array<double, 3> anchor{}; // the jump from which trial tractions count (tangential_part.cpp), length
+  FrictionState state{};          // of the law
   double slip = 0.0;            // accumulated over all contacts of the point, length
   bool open = true;
 
   /// As a row of numbers, and back.
-  static constexpr int row_size = 10;
+  static constexpr int row_size = 13;
   void append_to(std::vector<double>& row) const;
   static PointHistory from_row(std::span<const double> row);
 };

@@ -1,10 +1,16 @@
 // Small kinematics: projections are fixed in the reference configuration, so a point slides over a fixed place of the
-// master and the increment of tangential motion since the last accepted state is
-//   Δg_t = P Δ(u_slave − u_master − rigid shift),  P = 1 − n ⊗ n,
+// master and its tangential motion from a jump a is
+//   Δg_t = P (u_slave − u_master − rigid shift − a),  P = 1 − n ⊗ n,
 // convective and frame-indifferent to first order as the whole of small kinematics is. The shear traction follows from
 //   q = P λ_t + ε Δg_t,  σ_t = return_map(q, p = −σ_n),  virtual work ∫ σ_t · δg_t,
 // with the ε of the normal part. λ_t is the last accepted traction of the point (penalty), or Σ N_i λ_i with nodal
 // vectors held (Uzawa) or unknown (semismooth).
+//
+// Penalty counts from the last accepted jump. With multipliers a is the anchor: the jump where the point closed, carried
+// along by its slips. In stick σ_t − P λ_t = ε Δg_t, where nodal multipliers (averages) cannot take up all of the
+// traction of a point: a difference of order h². Counted from the last accepted jump, each increment would add such a
+// motion anew, however small it is: sticking surfaces would creep with the number of increments and no answer would
+// settle as increments shrink. From the anchor it is there once and for all, as the gap of the normal part is.
 //
 // Nodal λ_i have dim Cartesian components: no tangent basis has to be chosen at nodes, where the surface has no normal,
 // or agreed upon between ranks. As for the normal part they are the lumped projection of the traction,
@@ -130,10 +136,11 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
     const auto& old = history_[i];
     active_[i] = active[i];
     jump_[i] = points_.displacement_jump(point, state);
-    std::array<double, 3> moved{}, trial{};
+    std::array<double, 3> moved{}, from_anchor{}, trial{};
     for (int c = 0; c < 3; ++c) {
       jump_[i][c] -= shift[c];
       moved[c] = jump_[i][c] - old.jump[c];
+      from_anchor[c] = jump_[i][c] - old.anchor[c];
     }
     if (!active[i]) {
       responses_[i] = {};
@@ -144,8 +151,9 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
     increment_[i] = tangential(moved, point.normal);
     const auto lambda = has_multipliers() ? multiplier_at(point) : old.traction;
     const auto held = tangential(lambda, point.normal);
+    const auto motion = tangential(from_anchor, point.normal);
     for (int c = 0; c < 3; ++c)
-      trial[c] = held[c] + point.epsilon * increment_[i][c];
+      trial[c] = held[c] + point.epsilon * motion[c];
     const FrictionContext context{
         .dt = std::max(0.0, state.time - accepted_time_), .factor = factor_[i], .new_contact = old.open};
     pressed_[i] = sigma[i] < 0.0;
@@ -310,10 +318,18 @@ void TangentialPart::remember_tangent(bool guess_stick) {
 
 // --- history and multipliers -----------------------------------------------------------------------------------------
 
+std::array<double, 3> TangentialPart::anchor_after(std::size_t i) const {
+  if (!active_[i] || !has_multipliers()) return jump_[i];
+  const auto slip = slip_vector(responses_[i]);
+  const auto& old = history_[i].anchor;
+  return {old[0] + slip[0], old[1] + slip[1], old[2] + slip[2]};
+}
+
 void TangentialPart::commit(const State& state) {
   for (std::size_t i = 0; i < history_.size(); ++i)
     history_[i] = {.traction = responses_[i].traction,
                    .jump = jump_[i],
+                   .anchor = anchor_after(i),
                    .state = responses_[i].state,
                    .slip = history_[i].slip + responses_[i].slip,
                    .open = active_[i] == 0};

@@ -80,6 +80,7 @@ class TangentialPart {
   void jump_variation(const ContactPoint& point, const ContactBlock& layout, std::span<double> motion) const;
   void trial_tangent(std::size_t i, const ContactBlock& layout, bool guess_stick, std::span<const double> motion,
                      std::span<double> response) const;
+  std::array<double, 3> anchor_after(std::size_t i) const;
   double spring_energy(const TangentVector& traction, double epsilon) const;
 
   const DofLayout& layout_;
@@ -95,7 +96,7 @@ class TangentialPart {
   // At the last evaluation, per point:
   std::vector<FrictionResponse> responses_;
   std::vector<std::array<double, 3>> jump_; // u_slave − u_master − rigid shift
-  std::vector<TangentVector> increment_;    // Δg_t
+  std::vector<TangentVector> increment_;    // tangential motion since the last accepted state
   std::vector<std::uint8_t> active_, pressed_, assembled_status_;
   VecHandle local_multipliers_;
   ScatterHandle multiplier_scatter_;
