@@ -35,6 +35,8 @@ void add_friction_fields(const ContactSamples& sample, PointFields& points) {
   points.fields.push_back({.name = "slip", .components = 3, .values = std::move(slip)});
   points.fields.push_back({.name = "accumulated_slip", .values = sample.accumulated_slip});
   points.fields.push_back({.name = "tau_c", .values = sample.tau_c});
+  for (std::size_t k = 0; k < sample.states.size(); ++k)
+    points.fields.push_back({.name = sample.state_names[k], .values = sample.states[k]});
 }
 
 } // namespace
@@ -54,8 +56,10 @@ std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledge
     for (const char* quantity : {"area", "max_pressure", "penetration"})
       columns.push_back(prefix + quantity);
     if (!contact->tangential()) continue;
-    for (const char* quantity : {"stick_area", "slip_area", "dissipation"})
+    for (const char* quantity : {"stick_area", "slip_area", "open_area", "dissipation", "dissipation_total"})
       columns.push_back(prefix + quantity);
+    for (int c = 0; c < d; ++c)
+      columns.push_back(prefix + "shear_" + axes[c]);
   }
   if (measures_path(scene.deck)) columns.emplace_back("path_error");
   for (const char* quantity : {"energy_stored", "energy_dissipated", "energy_external_work", "newton", "linear",
@@ -76,7 +80,10 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
     const auto& pair = totals[i];
     row.insert(row.end(), pair.force.begin(), pair.force.begin() + d);
     row.insert(row.end(), {pair.area, pair.max_pressure, pair.largest_penetration});
-    if (scene.contacts[i]->tangential()) row.insert(row.end(), {pair.stick_area, pair.slip_area, pair.dissipation});
+    if (!scene.contacts[i]->tangential()) continue;
+    row.insert(row.end(), {pair.stick_area, pair.slip_area, pair.open_area, pair.dissipation,
+                           ledger.dissipated_by_pair()[i]});
+    row.insert(row.end(), pair.tangential_force.begin(), pair.tangential_force.begin() + d);
   }
   if (measures_path(scene.deck)) row.push_back(report.path_error);
   row.insert(row.end(), {ledger.stored_energy(), ledger.dissipated_energy(), ledger.external_work(),
@@ -155,6 +162,26 @@ nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds) {
           {"cpu_seconds", sums[0]},
           {"peak_memory_bytes", sums[1]},
           {"phase_seconds", phases}};
+}
+
+nlohmann::ordered_json contact_results(const Scene& scene, const Ledger& ledger,
+                                       const std::vector<ContactTotals>& totals) {
+  nlohmann::ordered_json results;
+  for (std::size_t i = 0; i < totals.size(); ++i) {
+    const auto& pair = totals[i];
+    auto& json = results[scene.contacts[i]->pair().name];
+    json = {{"force", pair.force},
+            {"area", pair.area},
+            {"max_pressure", pair.max_pressure},
+            {"largest_penetration", pair.largest_penetration}};
+    if (scene.contacts[i]->tangential())
+      json["friction"] = {{"force", pair.tangential_force},
+                          {"stick_area", pair.stick_area},
+                          {"slip_area", pair.slip_area},
+                          {"open_area", pair.open_area},
+                          {"dissipation", ledger.dissipated_by_pair()[i]}};
+  }
+  return results;
 }
 
 nlohmann::ordered_json describe_scene(const Scene& scene) {

@@ -384,13 +384,7 @@ int Run::finish(int status, const std::string& reason) {
   summary["factorizations"] = factorizations_;
   summary["remedies"] = {{"cutbacks", cutbacks_}, {"supported_bodies", scene_->floating}};
   summary["time"] = scene_->problem->time();
-  nlohmann::ordered_json results;
-  for (std::size_t i = 0; i < last_totals_.size(); ++i)
-    results[scene_->contacts[i]->pair().name] = {{"force", last_totals_[i].force},
-                                                 {"area", last_totals_[i].area},
-                                                 {"max_pressure", last_totals_[i].max_pressure},
-                                                 {"largest_penetration", last_totals_[i].largest_penetration}};
-  summary["contact"] = results;
+  summary["contact"] = contact_results(*scene_, *ledger_, last_totals_);
   summary["energy"] = {{"stored", ledger_->stored_energy()},
                        {"dissipated", ledger_->dissipated_energy()},
                        {"external_work", ledger_->external_work()},

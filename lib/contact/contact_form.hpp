@@ -27,7 +27,7 @@ struct ContactTotals {
   double largest_penetration = 0.0; // −g over the points in contact, relative to the facet size
   // Zero without friction:
   std::array<double, 3> tangential_force{}; // on the slave; part of `force`
-  double stick_area = 0.0, slip_area = 0.0;
+  double stick_area = 0.0, slip_area = 0.0, open_area = 0.0;
   double dissipation = 0.0; // in the increment since the last accepted state
   double path_error = 0.0;  // of the shear's energy in that increment (TangentialPart::sums)
 };

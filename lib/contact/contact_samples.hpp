@@ -30,6 +30,10 @@ struct ContactSamples {
   std::vector<double> tau_c;                // the law's limit of |shear|
   std::vector<std::array<double, 3>> slip;  // of the slave over the master in this increment
   std::vector<double> accumulated_slip;
+  /// State variables of the friction law, as many as it has: [variable][point], at the end of the increment; zero where
+  /// open.
+  std::vector<std::string> state_names;
+  std::vector<std::vector<double>> states;
   /// Nodal pressure on the slave surface at the local mesh nodes `nodes` (owned vertices): multipliers, or for penalty
   /// the projected pressure.
   std::vector<std::int32_t> nodes;

@@ -409,6 +409,9 @@ TangentialSums TangentialPart::sums() const {
 
 void TangentialPart::sample(ContactSamples& samples) const {
   samples.has_friction = true;
+  const auto names = state_names(pair_.friction->law);
+  samples.state_names.assign(names.begin(), names.end());
+  samples.states.assign(names.size(), {});
   for (std::size_t i = 0; i < responses_.size(); ++i) {
     samples.status[i] = status(i);
     const auto& traction = responses_[i].traction; // conjugate to u_slave: what the slave exerts
@@ -416,6 +419,8 @@ void TangentialPart::sample(ContactSamples& samples) const {
     samples.tau_c.push_back(responses_[i].tau_c);
     samples.slip.push_back(slip_vector(responses_[i]));
     samples.accumulated_slip.push_back(history_[i].slip + responses_[i].slip);
+    for (std::size_t k = 0; k < samples.states.size(); ++k)
+      samples.states[k].push_back(responses_[i].state[k]);
   }
 }
 

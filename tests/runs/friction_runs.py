@@ -82,7 +82,7 @@ def largest_difference(a, b):
             worst = max(worst, (float(np.abs(values - second[name]).max() / scale), name))
     force = max(abs(values[-1]) for name, values in a.history.items() if "force" in name or "reaction" in name)
     for name, values in a.history.items():
-        if name in ("newton", "linear", "outer", "residual") or "penetration" in name:
+        if name in ("newton", "linear", "outer", "residual", "path_error") or "penetration" in name:
             continue
         scale = force if "force" in name or "reaction" in name else abs(values[-1])
         if scale > 0:
@@ -113,3 +113,91 @@ def restart_of_friction(case):
             difference, where = largest_difference(reference, Results(whole_deck, out))
             print(f"     {name}, {ranks} ranks: largest difference {difference:.1e} in {where}")
             case.expect(f"{name}: the same end on {ranks} ranks", difference <= 1e-10, f"{difference} in {where}")
+
+
+def path_control(case):
+    """A frictional cylinder, pressed and sheared. The fine answer (200 + 100 increments) is found within the tolerance in
+    a fraction of the increments, where 1 + 2 increments miss it; the summary says so; a restart goes on with the same
+    books; with fixed increments the estimate covers what they are off, and changes nothing."""
+    decks = {
+        "fine": equal_steps(200, 100),
+        "rough": equal_steps(1, 2),
+        "controlled": [
+            {"name": name, "to": to, "increments": {"auto": {"path_tolerance": 0.01}}}
+            for name, to in (("press", 1), ("shear", 2))
+        ],
+        "plain": equal_steps(5, 5),
+        "estimated": equal_steps(5, 5),
+    }
+    results = {}
+    for name, steps in decks.items():
+        results[name] = run_cylinder(case, name, steps, {"estimate_path_error": name == "estimated"})
+    fine = point_fields(results["fine"])
+
+    def shear_off(name):
+        """L2 of the difference to the fine shear, relative to that of the bound, as the estimate has it."""
+        fields = point_fields(results[name])
+        square = np.sum(fine["weight"] * np.sum((fields["shear"] - fine["shear"]) ** 2, axis=1))
+        return float(np.sqrt(square / np.sum(fine["weight"] * fine["tau_c"] ** 2)))
+
+    path = results["controlled"].summary["path"]
+    count = results["controlled"].summary["increments"]
+    print(f"     {count} increments, off by {shear_off('controlled'):.1e}, said {path['estimated_error']:.1e}")
+    case.expect("1 + 2 increments miss the tolerance", shear_off("rough") > 0.05, shear_off("rough"))
+    case.expect("path control keeps it", shear_off("controlled") <= 0.01, shear_off("controlled"))
+    case.expect("and says so", path["estimated_error"] <= 0.02 and path["beyond_tolerance"] == 0, path)
+    case.expect("with a third of the increments at most", count <= 100, count)
+    case.expect("as many rows as increments", len(results["controlled"].history["time"]) == count)
+    case.expect("every half is certified", np.all(results["controlled"].history["certified"] == 1))
+
+    path = results["estimated"].summary["path"]
+    print(f"     fixed: off by {shear_off('estimated'):.1e}, said {path['estimated_error']:.1e}")
+    case.expect("the estimate covers the error", shear_off("estimated") <= path["estimated_error"] <= 0.5, path)
+    difference, where = largest_difference(results["plain"], results["estimated"])
+    case.expect("the estimate changes nothing", difference <= 1e-10, f"{difference} in {where}")
+    work = results["plain"].summary["newton_iterations"] + path["extra_newton_iterations"]
+    case.expect("its cost is stated", work == results["estimated"].summary["newton_iterations"], path)
+    restarted_path(case, decks["controlled"], results["controlled"])
+    held_load(case)
+
+
+def equal_steps(press, shear):
+    return [
+        {"name": "press", "to": 1, "increments": press},
+        {"name": "shear", "to": 2, "increments": shear},
+    ]
+
+
+def run_cylinder(case, name, steps, changes, *words):
+    deck, path = variant_deck(case, "cylinder, semismooth", steps, name)
+    for key, value in changes.items():
+        set_key(deck, key, value)
+    case.write(deck, name)
+    status, text = case.run(1, path, "--out", case.folder / name, *words)
+    case.expect(f"{name} ends with 0", status == 0, text)
+    return Results(deck, case.folder / name)
+
+
+def held_load(case):
+    """A load that stays: nothing moves, whatever number of increments it stays for."""
+    hold = {"name": "hold", "to": 2}
+    press = {"name": "press", "to": 1, "increments": 3}
+    still = {"contact.0.master.cylinder.displacement.x": "0"}
+    ends = [
+        run_cylinder(case, f"held_{count}", [press, {**hold, "increments": count}], still) for count in (1, 20)
+    ]
+    difference, where = largest_difference(*ends)
+    case.expect("a held load does not creep", difference <= 1e-10, f"{difference} in {where}")
+
+
+def restarted_path(case, steps, reference):
+    """Stopped at the end of the first step and gone on with: the same increments, the same sums."""
+    run_cylinder(case, "first_step", steps[:1], {})
+    checkpoint = case.folder / "first_step" / "checkpoint.h5"
+    rest = run_cylinder(case, "second_step", steps, {}, "--restart", checkpoint)
+    difference, where = largest_difference(reference, rest)
+    case.expect("after a restart: the same end", difference <= 1e-10, f"{difference} in {where}")
+    sums = [run.summary["path"]["estimated_error"] for run in (reference, rest)]
+    case.expect("after a restart: the same sum", abs(sums[0] - sums[1]) <= 1e-9 * sums[0], sums)
+    counts = [run.summary["increments"] for run in (reference, rest)]
+    case.expect("after a restart: the same increments", counts[0] == counts[1], counts)
