@@ -197,7 +197,8 @@ ObjectRule<StepDeck> step_rule() {
                                        number_text(value.largest) + ".");
       });
   TaggedRule<IncrementsDeck> increments;
-  increments.bare(integer(Range::at_least(1))).tag("auto", automatic, "Increments chosen by Newton's effort, and by the path error where it has a tolerance.");
+  increments.bare(integer(Range::at_least(1)))
+      .tag("auto", automatic, "Increments chosen by Newton's effort, and by the path error where it has a tolerance.");
   ObjectRule<StepDeck> rule;
   rule.required("name", &StepDeck::name, identifier("name of the step in the results"), "Names the step.")
       .required("to", &StepDeck::to, number("time", Range::above(0)),

@@ -101,7 +101,7 @@ struct AutoIncrements {
   double first = 0.1;     // fraction of the step
   double smallest = 1e-4; // fraction of the step below which the run gives up
   double largest = 1.0;
-  int target_iterations = 8; // Newton iterations at which the increment is kept; fewer: grow, more: shrink
+  int target_iterations = 8;            // Newton iterations at which the increment is kept; fewer: grow, more: shrink
   std::optional<double> path_tolerance; // of the path error of the whole step; absent: not measured
 };
 using IncrementsDeck = std::variant<int, AutoIncrements>;

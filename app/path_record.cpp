@@ -21,25 +21,27 @@ void PathRecord::add_cost(int newton_iterations, double seconds) {
 }
 
 nlohmann::ordered_json PathRecord::to_json() const {
-  return {{"estimated_error", sum_.largest()},
-          {"displacement", sum_.displacement},
-          {"pressure", sum_.pressure},
-          {"shear", sum_.shear},
-          {"largest_status_difference", sum_.status},
-          {"meaning",
-           "sum over the increments of how far the kept solution is off for the size of the increment, assuming a local "
-           "error of second order; each relative to the largest displacement, pressure or shear limit so far"},
-          {"compared", measured_},
-          {"not_compared", unmeasured_},
-          {"rejected", rejected_},
-          {"beyond_tolerance", beyond_},
-          {"extra_newton_iterations", newton_},
-          {"extra_seconds", seconds_}};
+  return {
+      {"estimated_error", sum_.largest()},
+      {"displacement", sum_.displacement},
+      {"pressure", sum_.pressure},
+      {"shear", sum_.shear},
+      {"largest_status_difference", sum_.status},
+      {"meaning",
+       "sum over the increments of how far the kept solution is off for the size of the increment, assuming a local "
+       "error of second order; each relative to the largest displacement, pressure or shear limit so far"},
+      {"compared", measured_},
+      {"not_compared", unmeasured_},
+      {"rejected", rejected_},
+      {"beyond_tolerance", beyond_},
+      {"extra_newton_iterations", newton_},
+      {"extra_seconds", seconds_}};
 }
 
 void PathRecord::save(Checkpoint& checkpoint) const {
-  checkpoint.global["path"] = {sum_.displacement,   sum_.pressure,       sum_.shear,       sum_.status,     seconds_,
-                               double(measured_),   double(unmeasured_), double(rejected_), double(beyond_), double(newton_)};
+  checkpoint.global["path"] = {sum_.displacement, sum_.pressure,     sum_.shear,          sum_.status,
+                               seconds_,          double(measured_), double(unmeasured_), double(rejected_),
+                               double(beyond_),   double(newton_)};
   auto& values = checkpoint.global["path_scales"];
   values = {scales.displacement};
   for (const auto& pair : scales.pairs)

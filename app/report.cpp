@@ -81,8 +81,8 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
     row.insert(row.end(), pair.force.begin(), pair.force.begin() + d);
     row.insert(row.end(), {pair.area, pair.max_pressure, pair.largest_penetration});
     if (!scene.contacts[i]->tangential()) continue;
-    row.insert(row.end(), {pair.stick_area, pair.slip_area, pair.open_area, pair.dissipation,
-                           ledger.dissipated_by_pair()[i]});
+    row.insert(row.end(),
+               {pair.stick_area, pair.slip_area, pair.open_area, pair.dissipation, ledger.dissipated_by_pair()[i]});
     row.insert(row.end(), pair.tangential_force.begin(), pair.tangential_force.begin() + d);
   }
   if (measures_path(scene.deck)) row.push_back(report.path_error);

@@ -30,8 +30,8 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
 
 /// Seconds per phase (mean over ranks), CPU seconds and peak memory (sums over ranks). Collective.
 nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds);
-/// What each pair transmits at the end of the run; of frictional pairs also the shear force, the areas that stick, slide
-/// and are open, and the dissipation since the start.
+/// What each pair transmits at the end of the run; of frictional pairs also the shear force, the areas that stick,
+/// slide and are open, and the dissipation since the start.
 nlohmann::ordered_json contact_results(const Scene& scene, const Ledger& ledger,
                                        const std::vector<ContactTotals>& totals);
 /// Sizes, effects on and off, pairs and how they are enforced. Collective.

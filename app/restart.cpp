@@ -100,8 +100,8 @@ void restore_pair(const Scene& scene, ContactForm& contact, const Checkpoint& ch
   if (has_multipliers(contact)) {
     const auto& stored = checkpoint.nodal.at(multiplier_name(contact));
     for (std::size_t i = 0; i < contact.nodes().nodes.size(); ++i) {
-      const auto row =
-          std::span(stored.values).subspan(std::size_t(contact.nodes().nodes[i]) * stored.components, stored.components);
+      const auto row = std::span(stored.values)
+                           .subspan(std::size_t(contact.nodes().nodes[i]) * stored.components, stored.components);
       history.multipliers[i] = row[0];
       for (std::size_t c = 0; c < history.tangential_multipliers.size(); ++c)
         history.tangential_multipliers[c][i] = row[c + 1];

@@ -262,7 +262,8 @@ int Run::control_path(Stretch& stretch, const SolvedState& whole, const std::vec
   const double dt = whole.time - control.now();
   const auto measured = difference(whole, halves);
   const auto verdict = stretch.path->judge(measured.largest(), measured.status, dt);
-  const auto sizes = formatted("halves differ by %.2e, in status on %.2e of the area", measured.largest(), measured.status);
+  const auto sizes =
+      formatted("halves differ by %.2e, in status on %.2e of the area", measured.largest(), measured.status);
   if (!verdict.accepted && control.shortened(verdict.factor)) {
     path_->add_rejected();
     path_->add_cost(halves[0].outcome.newton + halves[1].outcome.newton, seconds);
@@ -271,8 +272,8 @@ int Run::control_path(Stretch& stretch, const SolvedState& whole, const std::vec
   }
   if (!verdict.accepted) {
     path_->add_beyond_tolerance();
-    log_.line(formatted("  %s: t = %g is kept for no smaller increment is allowed: %s", stretch.name.c_str(), whole.time,
-                        sizes.c_str()));
+    log_.line(formatted("  %s: t = %g is kept for no smaller increment is allowed: %s", stretch.name.c_str(),
+                        whole.time, sizes.c_str()));
   }
   stretch.path->spend(measured.largest(), dt);
   const double error = path_->add(measured, KeptSolution::Halves);

@@ -487,7 +487,8 @@ ContactSamples ContactForm::samples(const State& state) {
 ContactTotals ContactForm::totals(const State& state) {
   evaluate(state);
   ContactTotals totals;
-  double sums[15] = {}; // force, moment, area, tangential force, stick and slip area, dissipation, path error, open area
+  double sums[15] =
+      {}; // force, moment, area, tangential force, stick and slip area, dissipation, path error, open area
   double largest[2] = {};
   const auto& points = points_.points();
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -16,7 +16,7 @@ struct PointHistory {
   std::array<double, 3> jump{};   // u_slave − u_master − rigid shift, length
   std::array<double, 3> anchor{}; // the jump from which trial tractions count (tangential_part.cpp), length
   FrictionState state{};          // of the law
-  double slip = 0.0;            // accumulated over all contacts of the point, length
+  double slip = 0.0;              // accumulated over all contacts of the point, length
   bool open = true;
 
   /// As a row of numbers, and back.

@@ -6,10 +6,10 @@
 // with the ε of the normal part. λ_t is the last accepted traction of the point (penalty), or Σ N_i λ_i with nodal
 // vectors held (Uzawa) or unknown (semismooth).
 //
-// Penalty counts from the last accepted jump. With multipliers a is the anchor: the jump where the point closed, carried
-// along by its slips. In stick σ_t − P λ_t = ε Δg_t, where nodal multipliers (averages) cannot take up all of the
-// traction of a point: a difference of order h². Counted from the last accepted jump, each increment would add such a
-// motion anew, however small it is: sticking surfaces would creep with the number of increments and no answer would
+// Penalty counts from the last accepted jump. With multipliers a is the anchor: the jump where the point closed,
+// carried along by its slips. In stick σ_t − P λ_t = ε Δg_t, where nodal multipliers (averages) cannot take up all of
+// the traction of a point: a difference of order h². Counted from the last accepted jump, each increment would add such
+// a motion anew, however small it is: sticking surfaces would creep with the number of increments and no answer would
 // settle as increments shrink. From the anchor it is there once and for all, as the gap of the normal part is.
 //
 // Nodal λ_i have dim Cartesian components: no tangent basis has to be chosen at nodes, where the surface has no normal,

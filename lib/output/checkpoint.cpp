@@ -86,9 +86,8 @@ void write_facets(Hdf5File& file, const Mesh& mesh, const Checkpoint& checkpoint
     file.write_attribute(root, attribute("facet", i, "components"), std::int64_t(array.components));
     file.write_attribute(root, attribute("facet", i, "facets"),
                          sum_over_ranks(mesh.comm, static_cast<std::int64_t>(keys.size())));
-    file.write_attribute(
-        root, attribute("facet", i, "rows"),
-        sum_over_ranks(mesh.comm, static_cast<std::int64_t>(array.values.size()) / array.components));
+    file.write_attribute(root, attribute("facet", i, "rows"),
+                         sum_over_ranks(mesh.comm, static_cast<std::int64_t>(array.values.size()) / array.components));
     file.write(dataset("facet_keys", i), 2, halves(keys));
     file.write(dataset("facet_rows", i), 1, std::vector<double>(array.rows.begin(), array.rows.end()));
     file.write(dataset("facet", i), array.components, array.values);
@@ -231,9 +230,8 @@ void read_facets(Hdf5File& file, const Mesh& mesh, const std::string& path, Chec
     auto in_file = file.read(dataset("facet", i), array.components * rows.size);
     const auto surface = mesh.surfaces.find(array.surface);
     const FacetSet none;
-    const auto found =
-        rows_of_keys(mesh.comm, keys, share.first,
-                     facet_keys(mesh, surface == mesh.surfaces.end() ? none : surface->second));
+    const auto found = rows_of_keys(mesh.comm, keys, share.first,
+                                    facet_keys(mesh, surface == mesh.surfaces.end() ? none : surface->second));
     together(mesh.comm, [&] {
       if (surface == mesh.surfaces.end() || std::find(found.begin(), found.end(), -1) != found.end())
         refuse(path, "its surface '" + array.surface + "' is not that of this mesh");

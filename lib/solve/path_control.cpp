@@ -19,8 +19,7 @@ PathControl::Verdict PathControl::judge(double difference, double status, double
   Verdict verdict{.accepted = difference <= allowed && status <= tolerance_, .factor = largest_factor};
   if (difference > 0.0) verdict.factor = safety * proportional(dt) / difference;
   if (status > tolerance_) verdict.factor = std::min(verdict.factor, safety * tolerance_ / status);
-  verdict.factor =
-      std::clamp(verdict.factor, smallest_factor, verdict.accepted ? largest_factor : rejected_factor);
+  verdict.factor = std::clamp(verdict.factor, smallest_factor, verdict.accepted ? largest_factor : rejected_factor);
   return verdict;
 }
 

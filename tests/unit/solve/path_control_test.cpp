@@ -41,7 +41,8 @@ March march(double tolerance, double first, const std::function<double(double t,
 } // namespace
 
 TEST_CASE("with a local error of second order the sum stays within the tolerance, which is used") {
-  // Sum of c Δt² over n equal increments: c / n. Half of the tolerance, with the safety factor: n = c / (0.4 tolerance).
+  // Sum of c Δt² over n equal increments: c / n. Half of the tolerance, with the safety factor: n = c / (0.4
+  // tolerance).
   for (const double tolerance : {0.1, 0.01, 0.001}) {
     const auto result = march(tolerance, 0.5, [](double, double dt) { return dt * dt; });
     CHECK(result.sum <= tolerance);
@@ -94,6 +95,6 @@ TEST_CASE("a difference of status rejects by itself, and what was taken comes ba
   other.set_taken(control.taken());
   for (const double difference : {0.0005, 0.0011, 0.00113, 0.002})
     CHECK(other.judge(difference, 0.0, 0.1).accepted == control.judge(difference, 0.0, 0.1).accepted);
-  CHECK(control.judge(0.0011, 0.0, 0.1).accepted);       // 0.0005 + 0.0025 / 4
+  CHECK(control.judge(0.0011, 0.0, 0.1).accepted); // 0.0005 + 0.0025 / 4
   CHECK_FALSE(control.judge(0.00113, 0.0, 0.1).accepted);
 }
