@@ -28,8 +28,8 @@ class Ledger {
 
   /// ∫ F · du by the trapezoidal rule over the accepted increments: supports, loads and moving rigid masters.
   double external_work() const { return external_work_; }
-  /// Σ ½ |ΔF · Δu|: how far the trapezoidal rule can be off where forces grow monotonically; with friction plus what
-  /// it can be off at the sliding points (TangentialPart::sums).
+  /// How far external_work can be off stored_energy + dissipated_energy for the length of the increments alone; see
+  /// EnergyLedger::work_uncertainty.
   double work_uncertainty() const { return work_uncertainty_; }
   double stored_energy() const { return stored_energy_; }
   /// Frictional dissipation since the start, of all pairs and of each.
@@ -55,6 +55,7 @@ class Ledger {
 
  private:
   void find_external_forces(Vec unknowns);
+  double trapezoid_error(Vec unknowns, double change, double absolute_change);
   void collect_reactions();
   void collect_tied_displacements(Vec unknowns);
 

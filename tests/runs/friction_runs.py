@@ -150,6 +150,13 @@ def path_control(case):
     case.expect("as many rows as increments", len(results["controlled"].history["time"]) == count)
     case.expect("every half is certified", np.all(results["controlled"].history["certified"] == 1))
 
+    spread = {
+        name: run.summary["energy"]["external_work_uncertainty"] / run.summary["energy"]["external_work"]
+        for name, run in results.items()
+    }
+    print(f"     uncertainty of the work: {spread['plain']:.1e} with 5 + 5, {spread['fine']:.1e} with 200 + 100 increments")
+    case.expect("the books get as exact as the increments are fine", spread["fine"] <= 0.1 * spread["plain"], spread)
+
     path = results["estimated"].summary["path"]
     print(f"     fixed: off by {shear_off('estimated'):.1e}, said {path['estimated_error']:.1e}")
     case.expect("the estimate covers the error", shear_off("estimated") <= path["estimated_error"] <= 0.5, path)
