@@ -5,6 +5,7 @@
 #include "deck/rule.hpp"
 #include "deck_checks.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -211,7 +212,11 @@ ObjectRule<StepDeck> step_rule() {
       .optional("largest", &AutoIncrements::largest, fraction(), "Largest increment as a fraction of the step.")
       .optional("target_iterations", &AutoIncrements::target_iterations, integer(Range::at_least(1)),
                 "Newton iterations at which the increment is kept; fewer make it grow, more make it shrink.")
-      .not_yet("path_tolerance", "Bound the increments with `largest` instead.")
+      .optional("path_tolerance", &AutoIncrements::path_tolerance, number("1", Range::above_up_to(0, 0.5)),
+                "Each increment is solved whole and in two halves, which are kept. How far they differ (displacement, "
+                "contact pressure and shear, relative to the largest so far), summed over the step, stays below this "
+                "number; the part of the contact area with another status, in each increment.",
+                "E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.4.")
       .check([](const DeckNode& node, const AutoIncrements& value, Reading& reading) {
         if (value.smallest > value.first || value.first > value.largest)
           reading.fail(node.place, node.path + " must have smallest <= first <= largest, but has " +
@@ -219,7 +224,8 @@ ObjectRule<StepDeck> step_rule() {
                                        number_text(value.largest) + ".");
       });
   TaggedRule<IncrementsDeck> increments;
-  increments.bare(integer(Range::at_least(1))).tag("auto", automatic, "Increments chosen by Newton's effort.");
+  increments.bare(integer(Range::at_least(1)))
+      .tag("auto", automatic, "Increments chosen by Newton's effort, and by the path error where it has a tolerance.");
   ObjectRule<StepDeck> rule;
   rule.required("name", &StepDeck::name, identifier("name of the step in the results"), "Names the step.")
       .required("to", &StepDeck::to, number("time", Range::above(0)),
@@ -296,6 +302,9 @@ Rule<Deck> deck_rule() {
       .optional("contact", &Deck::contact, list_of(Rule<ContactDeck>(contact_rule())),
                 "Pairs of surfaces that may touch.")
       .required("steps", &Deck::steps, list_of(Rule<StepDeck>(step_rule()), 1), "The course of the run in time t.")
+      .optional("estimate_path_error", &Deck::estimate_path_error, boolean(),
+                "true: every increment is solved in two halves, too, for the estimate of the path error alone; takes "
+                "about three times as long. Steps with a path_tolerance have the estimate anyway.")
       .optional("certificate", &Deck::certificate, certificate_rule(),
                 "Tolerances of the checks that every accepted increment must pass.")
       .optional("output", &Deck::output, output_rule(), "What is written, and where.")
@@ -326,6 +335,13 @@ std::string file_text(const std::string& path) {
 }
 
 } // namespace
+
+bool measures_path(const Deck& deck) {
+  return deck.estimate_path_error || std::any_of(deck.steps.begin(), deck.steps.end(), [](const StepDeck& step) {
+           const auto* automatic = std::get_if<AutoIncrements>(&step.increments);
+           return automatic && automatic->path_tolerance;
+         });
+}
 
 const Shape& deck_shape() { return *the_rule().shape; }
 

@@ -105,7 +105,8 @@ struct AutoIncrements {
   double first = 0.1;     // fraction of the step
   double smallest = 1e-4; // fraction of the step below which the run gives up
   double largest = 1.0;
-  int target_iterations = 8; // Newton iterations at which the increment is kept; fewer: grow, more: shrink
+  int target_iterations = 8;            // Newton iterations at which the increment is kept; fewer: grow, more: shrink
+  std::optional<double> path_tolerance; // of the path error of the whole step; absent: not measured
 };
 using IncrementsDeck = std::variant<int, AutoIncrements>;
 
@@ -148,6 +149,7 @@ struct Deck {
   std::map<std::string, Located<VectorDeck>> body_force;
   std::vector<ContactDeck> contact;
   std::vector<StepDeck> steps;
+  bool estimate_path_error = false;
   CertificateDeck certificate;
   OutputDeck output;
   std::map<std::string, std::string> petsc; // option name without dash -> value
@@ -155,6 +157,9 @@ struct Deck {
   /// 2 or 3.
   int dim() const { return space_dim(space); }
 };
+
+/// Does any increment of the run need the comparison with its halves?
+bool measures_path(const Deck& deck);
 
 struct Shape;
 

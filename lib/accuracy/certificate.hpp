@@ -33,13 +33,17 @@ struct EnergyLedger {
   double dissipated = 0.0;
   /// Σ ½ (f_old + f) · Δu over supports, loads and moving rigid masters.
   double external_work = 0.0;
-  /// Σ ½ |Δf · Δu|, over the same. Frictionless contact of linear elastic bodies has a convex potential, so in every
-  /// increment
-  ///   f_old · Δu <= Δ stored <= f · Δu   and   |external_work − stored| <= work_uncertainty.
-  /// Friction has no potential. There, external_work = stored + dissipated up to work_uncertainty, in which each slave
-  /// point then counts |½ (t_old + t) · Δg − t · slip − Δ spring energy| + ½ |Δt · Δg|, t its shear traction and Δg its
-  /// tangential motion in the increment: the first is the error of the trapezoidal rule there, the second the part of
-  /// ½ Δf · Δu that friction may take away from the monotone rest.
+  /// Largest |external_work − stored − dissipated| that the length of the increments explains. With f = K u + contact
+  /// forces, K constant (linear elastic bodies), the trapezoidal rule is exact for the bodies, in every increment
+  ///   ½ (f_old + f) · Δu = Δ strain energy + Σ over slave points of ½ (σ_old + σ) Δg + ½ (t_old + t) · Δg_t
+  ///   Δf · Δu = 2 · strain energy(Δu) + Σ Δσ Δg + Δt · Δg_t,
+  /// σ normal traction, t shear traction, g gap and g_t tangential motion of a point. The contact potential ψ(g, λ) is
+  /// convex in g, and where there are multipliers they make it largest, so Σ σ_old Δg <= Δψ <= Σ σ Δg and
+  ///   |Σ ½ (σ_old + σ) Δg − Δψ| <= Σ ½ Δσ Δg = ½ Δf · Δu − strain energy(Δu) − Σ ½ Δt · Δg_t.
+  /// So it is the sum over increments of ½ Δf · Δu − strain energy(Δu), plus at each slave point with friction
+  /// |½ (t_old + t) · Δg_t − t · slip − Δ spring energy| + ½ |Δt · Δg_t|. It falls with the increments; the energy item
+  /// of the certificate holds what remains beyond it to the tolerance. Where a body is not linear elastic the first
+  /// part is Σ ½ |Δf · Δu| over the equations.
   double work_uncertainty = 0.0;
   /// f · u + Σ over slave points of pressure · n · (u_slave − u_master) − 2 · (strain energy), now: zero for linear
   /// elastic bodies in equilibrium. And the sum of the absolute values of the terms.

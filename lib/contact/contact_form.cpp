@@ -372,6 +372,19 @@ void ContactForm::roll_back() {
   assembled_ = false;
 }
 
+ContactHistory ContactForm::accepted() const {
+  ContactHistory history;
+  history.multipliers = multipliers_old_;
+  if (tangential_) tangential_->save(history);
+  return history;
+}
+
+void ContactForm::restore(const ContactHistory& history) {
+  multipliers_ = multipliers_old_ = history.multipliers;
+  if (tangential_) tangential_->restore(history);
+  assembled_ = false;
+}
+
 void ContactForm::hold_multipliers(std::vector<double> multipliers) { multipliers_ = std::move(multipliers); }
 
 void ContactForm::multiplier_defect(const State& state, std::vector<double>& defect, std::vector<double>& mass) {
@@ -474,7 +487,8 @@ ContactSamples ContactForm::samples(const State& state) {
 ContactTotals ContactForm::totals(const State& state) {
   evaluate(state);
   ContactTotals totals;
-  double sums[14] = {}; // force, moment, area, tangential force, stick and slip area, dissipation, path error
+  double sums[15] =
+      {}; // force, moment, area, tangential force, stick and slip area, dissipation, path error, open area
   double largest[2] = {};
   const auto& points = points_.points();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -502,8 +516,10 @@ ContactTotals ContactForm::totals(const State& state) {
     sums[11] = friction.slip_area;
     sums[12] = friction.dissipation;
     sums[13] = friction.path_error;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!active_[i]) sums[14] += points[i].weight;
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums, tangential_ ? 14 : 7, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
+  MPI_Allreduce(MPI_IN_PLACE, sums, tangential_ ? 15 : 7, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
   MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, layout_.mesh().comm);
   for (int c = 0; c < 3; ++c) {
     totals.force[c] = sums[c];
@@ -513,6 +529,7 @@ ContactTotals ContactForm::totals(const State& state) {
   totals.area = sums[6];
   totals.stick_area = sums[10];
   totals.slip_area = sums[11];
+  totals.open_area = sums[14];
   totals.dissipation = sums[12];
   totals.path_error = sums[13];
   totals.max_pressure = largest[0];

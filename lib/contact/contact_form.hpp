@@ -32,11 +32,17 @@ class ContactForm : public Form, public PairReport {
   bool coupling_changed(const State& state) override;
   void commit(const State& state) override;
   void roll_back() override;
+  /// A ContactHistory.
+  std::any history() const override { return accepted(); }
+  void restore(const std::any& history) override { restore(std::any_cast<const ContactHistory&>(history)); }
+  ContactHistory accepted() const override;
+  void restore(const ContactHistory& history) override;
   double stored_energy(const State& state) override;
   bool tangent_is_symmetric() const override { return !tangential_; }
 
   const ContactPair& pair() const override { return pair_; }
   const NodeField& nodes() const override { return nodes_; }
+  const ContactPoints& points() const override { return points_; }
 
   double multiplier_scale() const override { return scale_; }
   const std::vector<double>& multipliers() const override { return multipliers_; }

@@ -11,7 +11,7 @@
 // carry its traction, in every increment anew, also where nothing changes: surfaces that stick would creep, the farther
 // the more increments are taken. With q as above Δλ_t = 0 and Δg_t = 0 solve an increment without load, and the
 // differences add up to h² λ_t'' / (6 ε), as those of the gap do. Both agree in the first increment, and summed over
-// increments the nodal equation below is the same.
+// increments the nodal equation below is the same. A point that was open has q = P λ_t + ε Δg_t.
 //
 // Nodal λ_i have dim Cartesian components: no tangent basis has to be chosen at nodes, where the surface has no normal,
 // or agreed upon between ranks. As for the normal part they are the lumped projection of the traction,
@@ -96,17 +96,19 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
 
 // --- state at a point ------------------------------------------------------------------------------------------------
 
-/// Δλ_t, force per area.
-TangentVector TangentialPart::multiplier_increment(const ContactPoint& point) const {
+/// What a point carries before it moves: σ_t,old + Δλ_t, or λ_t where it was open; force per area.
+TangentVector TangentialPart::carried(std::size_t i) const {
+  const auto& point = points_.points()[i];
+  const auto& old = history_[i];
   const auto nodes = points_.slave().facet(point.facet);
   const auto shape = points_.multiplier_shape(point);
-  TangentVector increment{};
+  TangentVector carried = old.traction;
   for (std::size_t a = 0; a < shape.size(); ++a)
     for (int c = 0; c < layout_.dim(); ++c) {
       const auto at = position_[nodes[a]];
-      increment[c] += shape[a] * (multipliers_[c][at] - multipliers_old_[c][at]);
+      carried[c] += shape[a] * (multipliers_[c][at] - (old.open ? 0.0 : multipliers_old_[c][at]));
     }
-  return increment;
+  return carried;
 }
 
 void TangentialPart::fetch_multipliers(const State& state) {
@@ -158,14 +160,12 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
       continue;
     }
     increment_[i] = tangential(moved, point.normal);
-    auto carried = multiplier_increment(point);
-    for (int c = 0; c < 3; ++c)
-      carried[c] += old.traction[c];
-    const auto held = tangential(carried, point.normal);
+    const auto held = tangential(carried(i), point.normal);
     for (int c = 0; c < 3; ++c)
       trial[c] = held[c] + point.epsilon * increment_[i][c];
     pressed_[i] = sigma[i] < 0.0;
-    responses_[i] = return_map(pair_.friction->law, contexts_[i], trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
+    responses_[i] =
+        return_map(pair_.friction->law, contexts_[i], trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
   }
 }
 
@@ -339,6 +339,18 @@ void TangentialPart::commit(const State& state) {
 
 void TangentialPart::roll_back() { multipliers_ = multipliers_old_; }
 
+void TangentialPart::save(ContactHistory& history) const {
+  history.time = accepted_time_;
+  history.tangential_multipliers = multipliers_old_;
+  history.points = history_;
+}
+
+void TangentialPart::restore(const ContactHistory& history) {
+  accepted_time_ = history.time;
+  multipliers_ = multipliers_old_ = history.tangential_multipliers;
+  history_ = history.points;
+}
+
 std::vector<std::vector<double>> TangentialPart::multiplier_defect() const {
   std::vector<std::vector<double>> defect(multipliers_.size(), std::vector<double>(nodes_.nodes.size(), 0.0));
   const auto& points = points_.points();
@@ -397,6 +409,9 @@ TangentialSums TangentialPart::sums() const {
 
 void TangentialPart::sample(ContactSamples& samples) const {
   samples.has_friction = true;
+  const auto names = state_names(pair_.friction->law);
+  samples.state_names.assign(names.begin(), names.end());
+  samples.states.assign(names.size(), {});
   for (std::size_t i = 0; i < responses_.size(); ++i) {
     samples.status[i] = status(i);
     const auto& traction = responses_[i].traction; // conjugate to u_slave: what the slave exerts
@@ -406,6 +421,8 @@ void TangentialPart::sample(ContactSamples& samples) const {
     samples.accumulated_slip.push_back(history_[i].slip + responses_[i].slip);
     samples.friction_context.push_back(contexts_[i]);
     samples.friction_state_old.push_back(history_[i].state);
+    for (std::size_t k = 0; k < samples.states.size(); ++k)
+      samples.states[k].push_back(responses_[i].state[k]);
   }
 }
 

@@ -1,6 +1,7 @@
 // Friction of one contact pair: owned by its ContactForm, and only by one with friction.
 #pragma once
 
+#include "contact/contact_history.hpp"
 #include "contact/contact_pair.hpp"
 #include "contact/contact_points.hpp"
 #include "contact/contact_samples.hpp"
@@ -54,6 +55,9 @@ class TangentialPart {
 
   void commit(const State& state);
   void roll_back();
+  /// Adds what was last accepted to the pair's history, and makes a history the last accepted one.
+  void save(ContactHistory& history) const;
+  void restore(const ContactHistory& history);
 
   /// Cartesian components of λ_t at the pair's multiplier nodes: traction.
   const std::vector<std::vector<double>>& multipliers() const { return multipliers_; }
@@ -68,17 +72,9 @@ class TangentialPart {
   void sample(ContactSamples& samples) const;
 
  private:
-  /// A point as of the last accepted state.
-  struct History {
-    TangentVector traction{};
-    std::array<double, 3> jump{}; // u_slave − u_master − rigid shift
-    FrictionState state{};
-    double slip = 0.0; // accumulated over all contacts of the point
-    bool open = true;
-  };
   bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
   bool has_multipliers() const { return !std::holds_alternative<Penalty>(pair_.enforcement); }
-  TangentVector multiplier_increment(const ContactPoint& point) const;
+  TangentVector carried(std::size_t i) const;
   void fetch_multipliers(const State& state);
   void find_factors(double time);
   void jump_variation(const ContactPoint& point, const ContactBlock& layout, std::span<double> motion) const;
@@ -93,7 +89,7 @@ class TangentialPart {
   std::span<const std::int32_t> position_;
   double scale_;
   std::vector<std::vector<double>> multipliers_, multipliers_old_; // [component][node]
-  std::vector<History> history_;
+  std::vector<PointHistory> history_;
   double accepted_time_ = 0.0, factor_time_ = -1.0;
   std::vector<double> factor_;
   // At the last evaluation, per point:

@@ -50,7 +50,7 @@ struct Fixture {
                          .master = std::string("lower_top"),
                          .enforcement = enforcement,
                          .projection = {},
-                         .integration_degree = 6,
+                         .integration = FacetIntegration{6},
                          .search_distance = 0.5,
                          .space = space,
                          .stiffness = {300.0, 100.0}};
