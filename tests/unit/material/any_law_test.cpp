@@ -280,6 +280,8 @@ TEST_CASE("failures are values: inverted, not finite, out of range; no NaN comes
     CHECK(ends(Eigen::Vector3d(1e200, 1e-200, 1).asDiagonal()) != PointOutcome::Solved);
     CHECK(ends(Eigen::Vector3d(1e-300, 1, 1).asDiagonal()) != PointOutcome::NotConverged);
   }
+  CHECK(outcome_text(PointOutcome::Inverted) == "det F is not positive");
+  CHECK(outcome_text(PointOutcome::NotFinite) != outcome_text(PointOutcome::NotConverged));
   for (const auto& [name, material] : sample_plastics()) {
     MaterialPoint<SmallLaw> point(SmallPlastic{material});
     point.accept(Strain<3>::Constant(0.05));
