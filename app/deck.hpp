@@ -153,6 +153,9 @@ struct Deck {
 
 struct Shape;
 
+/// Which formulation of contact to choose and why.
+const std::string& enforce_advice();
+
 /// What a deck may say: for the schema and the manual pages.
 const Shape& deck_shape();
 
