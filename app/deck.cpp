@@ -145,12 +145,6 @@ TaggedRule<EnforceDeck> enforce_rule() {
   return rule;
 }
 
-const std::string enforce_meaning =
-    "How the contact conditions are enforced. Take semismooth unless the problem is large: it is exact, converges "
-    "quadratically and knows friction, but its saddle point needs a direct solver. For more than some 300,000 unknowns "
-    "in 3D take vi when there is no friction (symmetric positive definite, multigrid, converges from any guess), uzawa "
-    "when there is; penalty is for quick looks.";
-
 ObjectRule<ContactDeck> contact_rule() {
   TaggedRule<decltype(ContactDeck::projection)> projection;
   projection.tag("closest_point", ObjectRule<ClosestPointDeck>(), "The closest point of the master surface.")
@@ -178,7 +172,8 @@ ObjectRule<ContactDeck> contact_rule() {
       .required("slave", &ContactDeck::slave, text(group_meaning),
                 "The surface that carries quadrature points and multipliers; take the finer or the softer one.")
       .required("master", &ContactDeck::master, master_rule(), "The surface projected onto, or a rigid shape.")
-      .optional("enforce", &ContactDeck::enforce, enforce_rule(), enforce_meaning)
+      .optional("enforce", &ContactDeck::enforce, enforce_rule(),
+                "How the contact conditions are enforced. " + enforce_advice())
       .optional("projection", &ContactDeck::projection, projection, "How a slave point finds its master point.")
       .optional("integration", &ContactDeck::integration, integration, "How the slave surface is integrated over.")
       .optional(
@@ -341,6 +336,14 @@ bool measures_path(const Deck& deck) {
            const auto* automatic = std::get_if<AutoIncrements>(&step.increments);
            return automatic && automatic->path_tolerance;
          });
+}
+
+const std::string& enforce_advice() {
+  static const std::string advice =
+      "Take semismooth unless the problem is too large to factorize: it converges quadratically and knows friction, "
+      "but is a saddle point and needs a direct solver. A large problem takes vi without friction (symmetric positive "
+      "definite, so for multigrid; converges from any guess) and uzawa with friction; penalty is for quick looks.";
+  return advice;
 }
 
 const Shape& deck_shape() { return *the_rule().shape; }

@@ -163,6 +163,9 @@ bool measures_path(const Deck& deck);
 
 struct Shape;
 
+/// Which formulation of contact to choose and why.
+const std::string& enforce_advice();
+
 /// What a deck may say: for the schema and the manual pages.
 const Shape& deck_shape();
 

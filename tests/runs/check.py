@@ -74,7 +74,7 @@ def same(a, b, tolerance=1e-8):
 
 def restart(case):
     """Half of a run on one rank, the other half on two, equals the whole; for held and unknown multipliers."""
-    for enforce in ({"semismooth": {}}, {"uzawa": {}}):
+    for enforce in ({"semismooth": {}}, {"uzawa": {}}, {"vi": {}}):
         name = next(iter(enforce))
         whole, parts = case.folder / f"whole_{name}", case.folder / f"parts_{name}"
         deck = case.deck({"contact.0.enforce": enforce}, name)
