@@ -62,7 +62,8 @@ struct Batch {
 
 /// Newton's method for the bubbles of a batch: one step for constant moduli.
 constexpr int most_bubble_steps = 25;
-constexpr double bubble_tolerance = 1e-10; // change of β relative to the displacements within the cell
+constexpr double bubble_tolerance = 1e-10; // change of β relative to differences of displacement within the cell
+constexpr double bubble_rounding = 64 * std::numeric_limits<double>::epsilon(); // relative to the displacements
 
 /// One Newton step for the bubble of cell c of a batch. True when it was a small one.
 template <class Kernel>
@@ -84,14 +85,17 @@ bool improve_bubble(const Material& material, std::size_t c, Batch<Kernel>& batc
   }
   const auto step = Kernel::solve(stiffness, force);
   Kernel::template add_strains<Kernel::nodes, Kernel::functions>(cell, step, &batch.strain[at]);
-  double change = 0, scale = 0;
+  double change = 0, largest = 0, spread = 0;
   for (int i = 0; i < dim; ++i) {
     u[first + i] += step[first + i];
     change = std::max(change, std::abs(step[first + i]));
-    for (int a = 1; a < Kernel::functions; ++a)
-      scale = std::max(scale, std::abs(u[a * dim + i] - (a < Kernel::nodes ? u[i] : 0.0)));
+    spread = std::max(spread, std::abs(u[first + i]));
+    for (int a = 0; a < Kernel::nodes; ++a) {
+      largest = std::max(largest, std::abs(u[a * dim + i]));
+      spread = std::max(spread, std::abs(u[a * dim + i] - u[i]));
+    }
   }
-  return change <= bubble_tolerance * scale;
+  return change <= bubble_tolerance * spread + bubble_rounding * largest;
 }
 
 /// Brings the bubbles of a batch into equilibrium with the nodes' displacements, and makes the stresses. Where the law
