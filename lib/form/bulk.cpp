@@ -62,10 +62,10 @@ struct Batch {
 
 /// Newton's method for the bubbles of a batch: one step for constant moduli.
 constexpr int most_bubble_steps = 25;
-constexpr double bubble_tolerance = 1e-10; // change of β relative to differences of displacement within the cell
-constexpr double bubble_rounding = 64 * std::numeric_limits<double>::epsilon(); // relative to the displacements
+constexpr double bubble_tolerance = 1e-10; // change of β relative to the displacements within the cell
 
-/// One Newton step for the bubble of cell c of a batch. True when it was a small one.
+/// One Newton step for the bubble of cell c of a batch. True when it was a small one. (Strains are changed in place, so
+/// rounding in those of the nodes does not come back as a change of β.)
 template <class Kernel>
 bool improve_bubble(const Material& material, std::size_t c, Batch<Kernel>& batch) {
   constexpr int dim = Kernel::dim, first = Kernel::node_unknowns;
@@ -85,17 +85,14 @@ bool improve_bubble(const Material& material, std::size_t c, Batch<Kernel>& batc
   }
   const auto step = Kernel::solve(stiffness, force);
   Kernel::template add_strains<Kernel::nodes, Kernel::functions>(cell, step, &batch.strain[at]);
-  double change = 0, largest = 0, spread = 0;
+  double change = 0, scale = 0;
   for (int i = 0; i < dim; ++i) {
     u[first + i] += step[first + i];
     change = std::max(change, std::abs(step[first + i]));
-    spread = std::max(spread, std::abs(u[first + i]));
-    for (int a = 0; a < Kernel::nodes; ++a) {
-      largest = std::max(largest, std::abs(u[a * dim + i]));
-      spread = std::max(spread, std::abs(u[a * dim + i] - u[i]));
-    }
+    for (int a = 1; a < Kernel::functions; ++a)
+      scale = std::max(scale, std::abs(u[a * dim + i] - (a < Kernel::nodes ? u[i] : 0.0)));
   }
-  return change <= bubble_tolerance * spread + bubble_rounding * largest;
+  return change <= bubble_tolerance * scale;
 }
 
 /// Brings the bubbles of a batch into equilibrium with the nodes' displacements, and makes the stresses. Where the law
