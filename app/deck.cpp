@@ -128,7 +128,8 @@ TaggedRule<EnforceDeck> enforce_rule() {
   ObjectRule<PenaltyDeck> penalty;
   penalty.optional(
       "alpha", &PenaltyDeck::alpha, number("1", Range::above(0)),
-      "Penalty stiffness in units of (tangent modulus / facet size); larger: less penetration, harder to solve.");
+      "Penalty stiffness in units of (tangent modulus / facet size); larger: less penetration, but rougher pressure on "
+      "coarse meshes and more iterations.");
   TaggedRule<EnforceDeck> rule;
   rule.tag("semismooth", semismooth, "Nodal multipliers solved together with the displacements by one Newton method.",
            "P. Alart, A. Curnier, Comput. Methods Appl. Mech. Engrg. 92 (1991) 353-375.")
