@@ -17,6 +17,7 @@ const char* const axes[] = {"x", "y", "z"};
 
 std::string enforcement_name(const ContactPair& pair) {
   if (std::holds_alternative<Penalty>(pair.enforcement)) return "penalty";
+  if (std::holds_alternative<BoundConstraint>(pair.enforcement)) return "vi";
   return std::holds_alternative<Uzawa>(pair.enforcement) ? "uzawa" : "semismooth";
 }
 
@@ -37,9 +38,9 @@ void add_friction_fields(const ContactSamples& sample, PointFields& points) {
   points.fields.push_back({.name = "tau_c", .values = sample.tau_c});
 }
 
-bool has_rigid_master(const ContactForm& contact) { return std::holds_alternative<RigidMaster>(contact.pair().master); }
+bool has_rigid_master(const PairReport& contact) { return std::holds_alternative<RigidMaster>(contact.pair().master); }
 
-std::string multiplier_name(const ContactForm& contact) { return "multiplier:" + contact.pair().name; }
+std::string multiplier_name(const PairReport& contact) { return "multiplier:" + contact.pair().name; }
 
 } // namespace
 
@@ -105,7 +106,7 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
   NodalStress recovered;
   std::vector<double> mises;
   if (wants_field(scene, "stress")) {
-    recovered = scene.bulk->nodal_stress(displacement);
+    recovered = scene.bulk->nodal_stress(state);
     const std::size_t components = scene.mesh.dim == 2 ? strain_size<2> : strain_size<3>;
     for (std::size_t at = 0; at < recovered.stress.size(); at += components) {
       mises.push_back(von_mises(std::span(recovered.stress).subspan(at, components)));
@@ -246,6 +247,7 @@ nlohmann::ordered_json describe_scene(const Scene& scene) {
   effects["inertia"] = false;
   effects["unknown_multipliers"] = scene.layout->num_extra() > 0;
   effects["outer_loop"] = scene.multipliers != nullptr;
+  effects["bounded_unknowns"] = scene.bounds != nullptr;
   effects["loads"] = scene.loads != nullptr;
   nlohmann::ordered_json json;
   json["dim"] = mesh.dim;

@@ -1,9 +1,10 @@
 """Pictures of friction: shear traction along an interface with its bound, stick and slip, hysteresis loops."""
 
 import numpy as np
-from matplotlib import pyplot as plt
 
-INK, COLOURS = "#22272e", ["#1f5fa8", "#d9722c", "#3a8f6b", "#8a4fa3", "#b03a48", "#6b7480"]
+from figure_style import INK, plt
+
+COLOURS = ["#1f5fa8", "#d9722c", "#3a8f6b", "#8a4fa3", "#b03a48", "#6b7480"]
 STICK, SLIP = 1, 2
 
 

@@ -69,7 +69,12 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
       multipliers_(layout.dim(), std::vector<double>(nodes.nodes.size(), 0.0)), multipliers_old_(multipliers_) {
   const std::size_t n = points.points().size();
   history_.resize(n);
+  if (points.has_rigid_master())
+    for (auto& point : history_)
+      for (int c = 0; c < 3; ++c)
+        point.jump[c] = -points.rigid_shift()[c];
   factor_.assign(n, 1.0);
+  contexts_.resize(n);
   responses_.resize(n);
   jump_.resize(n);
   increment_.resize(n);
@@ -139,6 +144,7 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
     const auto& point = points[i];
     const auto& old = history_[i];
     active_[i] = active[i];
+    contexts_[i] = {.dt = std::max(0.0, state.time - accepted_time_), .factor = factor_[i], .new_contact = old.open};
     jump_[i] = points_.displacement_jump(point, state);
     std::array<double, 3> moved{}, trial{};
     for (int c = 0; c < 3; ++c) {
@@ -158,10 +164,8 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
     const auto held = tangential(carried, point.normal);
     for (int c = 0; c < 3; ++c)
       trial[c] = held[c] + point.epsilon * increment_[i][c];
-    const FrictionContext context{
-        .dt = std::max(0.0, state.time - accepted_time_), .factor = factor_[i], .new_contact = old.open};
     pressed_[i] = sigma[i] < 0.0;
-    responses_[i] = return_map(pair_.friction->law, context, trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
+    responses_[i] = return_map(pair_.friction->law, contexts_[i], trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
   }
 }
 
@@ -400,6 +404,8 @@ void TangentialPart::sample(ContactSamples& samples) const {
     samples.tau_c.push_back(responses_[i].tau_c);
     samples.slip.push_back(slip_vector(responses_[i]));
     samples.accumulated_slip.push_back(history_[i].slip + responses_[i].slip);
+    samples.friction_context.push_back(contexts_[i]);
+    samples.friction_state_old.push_back(history_[i].state);
   }
 }
 

@@ -97,6 +97,7 @@ class TangentialPart {
   double accepted_time_ = 0.0, factor_time_ = -1.0;
   std::vector<double> factor_;
   // At the last evaluation, per point:
+  std::vector<FrictionContext> contexts_;
   std::vector<FrictionResponse> responses_;
   std::vector<std::array<double, 3>> jump_; // u_slave − u_master − rigid shift
   std::vector<TangentVector> increment_;    // Δg_t

@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import h5py
@@ -11,6 +12,8 @@ import numpy as np
 import yaml
 
 TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "scripts"))
+from deck_edit import DeckLoader  # noqa: E402
 
 # XDMF cell code -> number of nodes in the file. Hexahedra of order 2 are written with 20 of their 27.
 CELL_NODES = {4: 3, 5: 4, 6: 4, 9: 8, 36: 6, 35: 9, 38: 10, 48: 20}
@@ -18,16 +21,6 @@ CELL_NODES = {4: 3, 5: 4, 6: 4, 9: 8, 36: 6, 35: 9, 38: 10, 48: 20}
 
 def text_of(attribute):
     return attribute.decode() if isinstance(attribute, bytes) else str(attribute)
-
-
-class DeckLoader(yaml.SafeLoader):
-    """YAML 1.1 takes the key `on` for a truth value; a deck means the word."""
-
-
-DeckLoader.yaml_implicit_resolvers = {
-    first: [(tag, pattern) for tag, pattern in resolvers if tag != "tag:yaml.org,2002:bool"]
-    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
-}
 
 
 def load_deck(scene):
