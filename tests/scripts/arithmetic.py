@@ -234,6 +234,22 @@ class Words(unittest.TestCase):
         words = study_words.paragraph(study, outcomes, [], {})
         self.assertIn("by chance or at a price: h 0.2", words)
 
+    def test_uncertain_reference(self):
+        study, variants = read("quantities: {q: {summary: a, reference: {finest: size}}}\n"
+                               "sweeps: {size: {mesh.parameters.h: [0.4, 0.2, 0.1]}}")
+        outcomes = self.outcomes(study, variants)
+        for outcome in outcomes:
+            outcome.values["q"] += 1.0  # 1 + 0.99 h^2
+        finest = study_results.compare_with_finest(study, outcomes)
+        self.assertAlmostEqual(finest["q"]["value"], 1.0, 9)
+        self.assertAlmostEqual(finest["q"]["order"], 2.0, 9)
+        self.assertAlmostEqual(outcomes[1].errors["q"], 0.99 * 0.04, 9)
+        words = study_words.paragraph(study, outcomes, [], finest)
+        self.assertIn("5 % costs least with h 0.2 (4 %", words)
+        self.assertIn("1 % costs least with h 0.1", words)
+        self.assertIn("errors below 0.99 % cannot be told with this reference", words)
+        self.assertNotIn("0.1 %", words)
+
     def test_reference_of_zero(self):
         study, variants = read("quantities: {q: {summary: a, reference: {exact: 0}}}\n"
                                "sweeps: {size: {mesh.parameters.h: [0.4, 0.2]}}")
