@@ -32,17 +32,23 @@ double softest(const Scene& scene) {
 
 } // namespace
 
-Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<ContactSamples>& samples, Vec unknowns) {
+Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<ContactSamples>& samples, Vec accepted,
+                          Vec unknowns) {
   const auto pairs = pair_names(scene);
   const auto forces = ledger.nodal_external_forces(unknowns);
   const auto& deck = scene.deck.certificate;
+  const auto before = scene.problem->state_at(accepted).displacement;
+  std::vector<double> increment(before.begin(), before.end());
   const auto state = scene.problem->state_at(unknowns);
+  for (std::size_t i = 0; i < increment.size(); ++i)
+    increment[i] = state.displacement[i] - increment[i];
   const double size = scene_size(scene.mesh);
   const double area = scene.mesh.dim == 2 && scene.deck.space != Space::Axisymmetric ? size : size * size;
   const double force_floor = rounding_strain * softest(scene) * area;
   return certify({.mesh = scene.mesh,
                   .space = scene.deck.space,
                   .displacement = state.displacement,
+                  .increment = increment,
                   .pairs = pairs,
                   .samples = samples,
                   .external_forces = forces,
@@ -57,7 +63,9 @@ Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<Contac
                                  .complementarity = deck.complementarity,
                                  .balance = deck.balance,
                                  .energy = deck.energy,
-                                 .volume_ratio = deck.volume_ratio},
+                                 .volume_ratio = deck.volume_ratio,
+                                 .friction = deck.friction,
+                                 .slip = deck.slip},
                   .force_floor = force_floor,
                   .energy_floor = rounding_strain * force_floor * size});
 }

@@ -11,7 +11,8 @@
 namespace amontons {
 
 /// Checks the accepted state. Collective.
-Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<ContactSamples>& samples, Vec unknowns);
+Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<ContactSamples>& samples, Vec accepted,
+                          Vec unknowns);
 
 /// The worst value of each item over the increments of a run. Not collective.
 class CertificateRecord {

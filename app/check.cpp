@@ -61,7 +61,7 @@ std::string memory_text(double bytes) {
 }
 
 const char* enforce_name(const EnforceDeck& enforce) {
-  const char* const names[] = {"semismooth", "uzawa", "penalty"}; // in the order of EnforceDeck
+  const char* const names[] = {"semismooth", "uzawa", "penalty", "vi"}; // in the order of EnforceDeck
   return names[enforce.index()];
 }
 

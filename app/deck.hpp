@@ -77,12 +77,16 @@ struct UzawaDeck {
 struct SemismoothDeck {
   double alpha = 1.0;
 };
-using EnforceDeck = std::variant<SemismoothDeck, UzawaDeck, PenaltyDeck>;
+struct ViDeck {};
+using EnforceDeck = std::variant<SemismoothDeck, UzawaDeck, PenaltyDeck, ViDeck>;
 
 struct ClosestPointDeck {};
 struct SlaveNormalDeck {};
 struct FacetIntegrationDeck {
   int order = 4; // polynomial degree integrated exactly on a slave facet
+};
+struct SegmentIntegrationDeck {
+  int order = 4; // polynomial degree integrated exactly on each piece of a slave facet
 };
 
 struct ContactDeck {
@@ -91,7 +95,7 @@ struct ContactDeck {
   Located<MasterDeck> master;
   EnforceDeck enforce;
   std::variant<ClosestPointDeck, SlaveNormalDeck> projection;
-  std::variant<FacetIntegrationDeck> integration;
+  std::variant<FacetIntegrationDeck, SegmentIntegrationDeck> integration;
   std::optional<double> search_distance; // absent: a tenth of the diagonal of the smaller surface's box
   std::optional<FrictionLaw> friction;   // absent: frictionless
   std::optional<Expression> friction_factor;
@@ -118,6 +122,8 @@ struct CertificateDeck {
   double complementarity = 1e-2; // sum |pressure| |gap| / (total force x facet size)
   double balance = 1e-6;         // force and moment out of balance / force scale
   double energy = 1e-6;          // violation of the energy bounds / external work
+  double friction = 1e-6;        // shear off the law's limit / largest limit; negative part of the frictional work
+  double slip = 0.05;            // motion that is not the slip claimed / motion of the surfaces
   double volume_ratio = 0.0;     // smallest det F allowed
 };
 

@@ -200,9 +200,28 @@ struct ShapeCheck {
 
 const std::string shape_tags[] = {"", "plane", "sphere", "cylinder"}; // in the order of MasterDeck
 
+/// Bounds replace unknowns of the whole problem: all pairs have them or none, and a bound knows no friction.
+void check_bounds(const Check& check) {
+  const auto& contacts = check.deck.contact;
+  const auto is_bound = [](const ContactDeck& contact) { return std::holds_alternative<ViDeck>(contact.enforce); };
+  const auto bound = std::find_if(contacts.begin(), contacts.end(), is_bound);
+  const auto other = std::find_if_not(contacts.begin(), contacts.end(), is_bound);
+  if (bound == contacts.end()) return;
+  if (other != contacts.end())
+    check.fail({"contact", std::size_t(other - contacts.begin())},
+               list_path("contact", std::size_t(other - contacts.begin())) + ": the pair '" + bound->name.value +
+                   "' is enforced by vi, which serves all pairs of a deck or none. Give this pair " +
+                   "`enforce: {vi: {}}` too, or that one `enforce: {semismooth: {}}`.");
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    if (is_bound(contacts[i]) && contacts[i].friction)
+      check.fail({"contact", i, "friction"}, list_path("contact", i) + ".friction: vi is frictionless. Use " +
+                                                 "`enforce: {semismooth: {}}`, or leave friction out.");
+}
+
 void check_contact(const Check& check) {
   const auto& [deck, root, reading] = check;
   if (!check.sound("contact")) return;
+  check_bounds(check);
   std::map<std::string, std::size_t> names;
   std::map<std::set<std::string>, std::size_t> pairs;
   for (std::size_t i = 0; i < deck.contact.size(); ++i) {

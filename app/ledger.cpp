@@ -93,6 +93,23 @@ void Ledger::collect_tied_displacements(Vec unknowns) {
                 MPI_SUM, scene_.mesh.comm);
 }
 
+/// The work of body forces on the cell bubbles, which the nodes' forces leave out; to the sums of accept().
+void Ledger::add_bubble_work(Vec unknowns, std::span<double> sums) {
+  auto bubbles = scene_.bulk->loaded_bubbles(scene_.problem->state_at(unknowns));
+  const auto& f = bubbles.forces;
+  const auto& u = bubbles.displacements;
+  bubbles_old_.forces.resize(f.size());
+  bubbles_old_.displacements.resize(u.size());
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    const double step = u[i] - bubbles_old_.displacements[i];
+    sums[0] += 0.5 * (f[i] + bubbles_old_.forces[i]) * step;
+    sums[1] += 0.5 * std::abs((f[i] - bubbles_old_.forces[i]) * step);
+    sums[2] += f[i] * u[i];
+    sums[3] += std::abs(f[i] * u[i]);
+  }
+  bubbles_old_ = std::move(bubbles);
+}
+
 void Ledger::accept(Vec unknowns) {
   const auto& problem = *scene_.problem;
   find_external_forces(unknowns);
@@ -112,6 +129,7 @@ void Ledger::accept(Vec unknowns) {
       here[3] += std::abs(e[i] * u[i]);
     }
   }
+  add_bubble_work(unknowns, here);
   MPI_Allreduce(MPI_IN_PLACE, here, 4, MPI_DOUBLE, MPI_SUM, problem.comm());
   double contact_work = 0.0; // ∫ σ (g − g0)
   const auto state = scene_.problem->state_at(unknowns);
@@ -159,6 +177,7 @@ void Ledger::restore(Vec unknowns, double work, double uncertainty) {
     rigid_force_old_[i] = scene_.contacts[i]->totals(state).force;
     rigid_shift_old_[i] = scene_.contacts[i]->rigid_shift();
   }
+  bubbles_old_ = scene_.bulk->loaded_bubbles(state);
   AMT_PETSC(VecCopy(external_, external_old_));
   AMT_PETSC(VecCopy(unknowns, unknowns_old_));
 }

@@ -4,6 +4,7 @@
 #include "scene.hpp"
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace amontons {
@@ -50,6 +51,7 @@ class Ledger {
 
  private:
   void find_external_forces(Vec unknowns);
+  void add_bubble_work(Vec unknowns, std::span<double> sums);
   void collect_reactions();
   void collect_tied_displacements(Vec unknowns);
 
@@ -58,6 +60,7 @@ class Ledger {
   std::vector<std::array<double, 3>> rigid_force_old_, rigid_shift_old_;
   double external_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0, dissipated_energy_ = 0.0;
   double virtual_work_defect_ = 0.0, virtual_work_scale_ = 0.0;
+  LoadedBubbles bubbles_old_;
   bool initial_overlap_ = false, opened_ = false;
   std::vector<GroupReaction> reactions_;
   std::vector<double> tied_displacements_;

@@ -17,6 +17,7 @@ const char* const axes[] = {"x", "y", "z"};
 
 std::string enforcement_name(const ContactPair& pair) {
   if (std::holds_alternative<Penalty>(pair.enforcement)) return "penalty";
+  if (std::holds_alternative<BoundConstraint>(pair.enforcement)) return "vi";
   return std::holds_alternative<Uzawa>(pair.enforcement) ? "uzawa" : "semismooth";
 }
 
@@ -37,7 +38,9 @@ void add_friction_fields(const ContactSamples& sample, PointFields& points) {
   points.fields.push_back({.name = "tau_c", .values = sample.tau_c});
 }
 
-std::string multiplier_name(const ContactForm& contact) { return "multiplier:" + contact.pair().name; }
+bool has_rigid_master(const PairReport& contact) { return std::holds_alternative<RigidMaster>(contact.pair().master); }
+
+std::string multiplier_name(const PairReport& contact) { return "multiplier:" + contact.pair().name; }
 
 } // namespace
 
@@ -49,6 +52,9 @@ std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledge
       columns.push_back("reaction_" + reaction.group + "_" + axes[c]);
   for (const auto& tied : scene.layout->tied())
     columns.push_back("displacement_" + tied.group + "_" + axes[tied.component]);
+  for (const auto* contact : scene.contacts)
+    for (int c = 0; has_rigid_master(*contact) && c < d; ++c)
+      columns.push_back("displacement_" + contact->pair().name + "_master_" + axes[c]);
   for (const auto* contact : scene.contacts) {
     const auto prefix = "contact_" + contact->pair().name + "_";
     for (int c = 0; c < d; ++c)
@@ -73,6 +79,11 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
     row.insert(row.end(), reaction.force.begin(), reaction.force.begin() + d);
   for (std::size_t i = 0; i < scene.layout->tied().size(); ++i)
     row.push_back(ledger.tied_displacements()[i]);
+  for (const auto* contact : scene.contacts)
+    if (has_rigid_master(*contact)) {
+      const auto shift = contact->rigid_shift();
+      row.insert(row.end(), shift.begin(), shift.begin() + d);
+    }
   for (std::size_t i = 0; i < totals.size(); ++i) {
     const auto& pair = totals[i];
     row.insert(row.end(), pair.force.begin(), pair.force.begin() + d);
@@ -95,7 +106,7 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
   NodalStress recovered;
   std::vector<double> mises;
   if (wants_field(scene, "stress")) {
-    recovered = scene.bulk->nodal_stress(displacement);
+    recovered = scene.bulk->nodal_stress(state);
     const std::size_t components = scene.mesh.dim == 2 ? strain_size<2> : strain_size<3>;
     for (std::size_t at = 0; at < recovered.stress.size(); at += components) {
       mises.push_back(von_mises(std::span(recovered.stress).subspan(at, components)));
@@ -236,6 +247,7 @@ nlohmann::ordered_json describe_scene(const Scene& scene) {
   effects["inertia"] = false;
   effects["unknown_multipliers"] = scene.layout->num_extra() > 0;
   effects["outer_loop"] = scene.multipliers != nullptr;
+  effects["bounded_unknowns"] = scene.bounds != nullptr;
   effects["loads"] = scene.loads != nullptr;
   nlohmann::ordered_json json;
   json["dim"] = mesh.dim;

@@ -11,6 +11,7 @@
 #include "output/summary.hpp"
 #include "report.hpp"
 #include "scene.hpp"
+#include "solve/bounded_newton.hpp"
 #include "solve/step_control.hpp"
 #include "solve/uzawa.hpp"
 
@@ -41,7 +42,7 @@ class Run {
   SolveOutcome solve_increment(double target);
   /// Exit status of the step, status_certified to go on.
   int march_step(std::size_t step);
-  void accept(std::size_t step, const SolveOutcome& outcome, double next_increment, bool last);
+  void accept(std::size_t step, const SolveOutcome& outcome, double next_increment, bool step_ends);
   void write_checkpoint_file(std::size_t step, double next_increment);
   void progress(const std::string& step, const SolveOutcome& outcome, const std::vector<ContactTotals>& totals,
                 bool certified);
@@ -55,7 +56,8 @@ class Run {
   Log log_;
   std::unique_ptr<Scene> scene_;
   std::string directory_, solver_;
-  std::unique_ptr<Newton> newton_;
+  std::unique_ptr<Newton> newton_; // absent with bounded_
+  std::unique_ptr<BoundedNewton> bounded_;
   std::unique_ptr<UzawaLoop> uzawa_;
   std::unique_ptr<Ledger> ledger_;
   std::unique_ptr<FieldsWriter> fields_;
@@ -80,9 +82,14 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments) : comm_(comm), arguments_
   unknowns_ = scene_->layout->new_vector();
   accepted_ = scene_->layout->new_vector();
   ledger_ = std::make_unique<Ledger>(*scene_);
-  solver_ = choose_linear_solver(*scene_->problem);
   const auto stop = [this] { return stop_requested_ = interrupted(comm_); };
-  newton_ = std::make_unique<Newton>(*scene_->problem, stop);
+  if (scene_->bounds) {
+    solver_ = choose_bounded_solver(*scene_->problem);
+    bounded_ = std::make_unique<BoundedNewton>(*scene_->problem, *scene_->bounds, stop);
+  } else {
+    solver_ = choose_linear_solver(*scene_->problem);
+    newton_ = std::make_unique<Newton>(*scene_->problem, stop);
+  }
   if (scene_->multipliers) {
     double tolerance = 1.0;
     int iterations = 0;
@@ -172,6 +179,7 @@ StepPlan Run::plan(std::size_t step) const {
 SolveOutcome Run::solve_increment(double target) {
   AMT_PETSC(VecCopy(accepted_, unknowns_));
   scene_->problem->begin_increment(target, unknowns_);
+  if (bounded_) return bounded_->solve(unknowns_);
   return uzawa_ ? uzawa_->solve(unknowns_) : newton_->solve(unknowns_);
 }
 
@@ -204,13 +212,12 @@ int Run::march_step(std::size_t step) {
       continue;
     }
     control.accepted(outcome.newton);
-    const bool last = control.finished() && step + 1 == scene_->deck.steps.size();
-    accept(step, outcome, control.increment(), last);
+    accept(step, outcome, control.increment(), control.finished());
   }
   return status_certified;
 }
 
-void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_increment, bool last) {
+void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_increment, bool step_ends) {
   ++increments_;
   ledger_->accept(unknowns_);
   const auto state = scene_->problem->state_at(unknowns_);
@@ -223,7 +230,7 @@ void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_incr
   bool certified = false;
   {
     const Phase phase("certificate");
-    certified = certificate_.add(certify_state(*scene_, *ledger_, samples, unknowns_), state.time);
+    certified = certificate_.add(certify_state(*scene_, *ledger_, samples, accepted_, unknowns_), state.time);
   }
   const double time = state.time;
   scene_->problem->commit(unknowns_);
@@ -233,7 +240,7 @@ void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_incr
   history_->row(
       history_row(*scene_, *ledger_, last_totals_, {.time = time, .outcome = outcome, .certified = certified}));
   progress(scene_->deck.steps[step].name.value, outcome, last_totals_, certified);
-  if (last || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns_, samples);
+  if (step_ends || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns_, samples);
   write_checkpoint_file(step, next_increment);
 }
 

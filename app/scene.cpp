@@ -104,6 +104,7 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
                             pair.enforcement = Uzawa{};
                             pair.alpha = uzawa.alpha;
                           },
+                          [&](const ViDeck&) { pair.enforcement = BoundConstraint{}; },
                           [&](const SemismoothDeck& semismooth) {
                             pair.enforcement = Semismooth{static_cast<int>(fields.size())};
                             pair.alpha = semismooth.alpha;
@@ -117,7 +118,11 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
       pair.friction = Friction{
           .law = *declared.friction, .factor = declared.friction_factor, .field = unknown ? unknown->field + 1 : -1};
     }
-    pair.integration_degree = std::get<FacetIntegrationDeck>(declared.integration).order;
+    std::visit(Overloaded{[&](const FacetIntegrationDeck& facet) { pair.integration = FacetIntegration{facet.order}; },
+                          [&](const SegmentIntegrationDeck& segment) {
+                            pair.integration = SegmentIntegration{segment.order};
+                          }},
+               declared.integration);
     pair.holds_floating_body = on_flagged_body(mesh, pair.slave, floating);
     pair.search_distance = declared.search_distance.value_or(0.1 * surface_diagonal(mesh, pair.slave));
     if (const auto* master = std::get_if<std::string>(&pair.master)) {
@@ -215,7 +220,7 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   const auto& layout = *scene->layout;
 
   std::vector<std::unique_ptr<Form>> forms;
-  auto bulk = std::make_unique<BulkForm>(layout, deck.space, laws);
+  auto bulk = std::make_unique<BulkForm>(layout, deck.space, laws, conditions.body);
   scene->bulk = bulk.get();
   forms.push_back(std::move(bulk));
   if (!conditions.surface.empty() || !conditions.body.empty() || !conditions.resultants.empty()) {
@@ -226,8 +231,16 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   }
   if (!scene->floating.empty()) forms.push_back(std::make_unique<SupportForm>(layout, floating, stiffness));
   std::vector<ContactForm*> uzawa;
+  std::vector<MortarForm*> bounded;
   for (auto& pair : pairs) {
     const Phase search("search");
+    if (std::holds_alternative<BoundConstraint>(pair.enforcement)) {
+      auto form = std::make_unique<MortarForm>(layout, std::move(pair));
+      scene->contacts.push_back(form.get());
+      bounded.push_back(form.get());
+      forms.push_back(std::move(form));
+      continue;
+    }
     auto form = std::make_unique<ContactForm>(layout, std::move(pair));
     scene->contacts.push_back(form.get());
     if (std::holds_alternative<Uzawa>(form->pair().enforcement)) uzawa.push_back(form.get());
@@ -235,17 +248,30 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   }
   if (!uzawa.empty()) scene->multipliers = std::make_unique<UzawaMultipliers>(mesh, uzawa);
   scene->problem = std::make_unique<Problem>(layout, std::move(forms), std::move(conditions.prescribed));
+  if (!bounded.empty()) scene->bounds = std::make_unique<MortarTransform>(*scene->problem, std::move(bounded));
   return scene;
 }
+
+namespace {
+
+MovedShape moved_shape(const RigidMaster& rigid, const std::array<double, 3>& shift, double accepted_time) {
+  MovedShape shape{rigid.shape, shift, {}};
+  for (std::size_t c = 0; c < 3; ++c)
+    if (rigid.displacement[c]) shape.increment[c] = shift[c] - (*rigid.displacement[c])(accepted_time);
+  return shape;
+}
+
+} // namespace
 
 std::vector<ContactPairNames> pair_names(const Scene& scene) {
   std::vector<ContactPairNames> names;
   for (const auto* contact : scene.contacts) {
     ContactPairNames pair{.name = contact->pair().name, .slave = contact->pair().slave, .master = {}};
     if (const auto* rigid = std::get_if<RigidMaster>(&contact->pair().master))
-      pair.master = MovedShape{rigid->shape, contact->rigid_shift()};
+      pair.master = moved_shape(*rigid, contact->rigid_shift(), scene.problem->accepted_time());
     else
       pair.master = std::get<std::string>(contact->pair().master);
+    if (const auto& friction = contact->pair().friction) pair.friction = friction->law;
     names.push_back(std::move(pair));
   }
   return names;

@@ -2,6 +2,7 @@
 // for.
 #pragma once
 
+#include "contact/mortar_transform.hpp"
 #include "contact/uzawa_multipliers.hpp"
 #include "deck.hpp"
 #include "form/bulk.hpp"
@@ -21,10 +22,11 @@ struct Scene {
   Mesh mesh;
   std::unique_ptr<DofLayout> layout;
   std::unique_ptr<Problem> problem;
-  BulkForm* bulk = nullptr;  // owned by the problem
-  LoadForm* loads = nullptr; // absent without loads
-  std::vector<ContactForm*> contacts;
+  BulkForm* bulk = nullptr;                      // owned by the problem
+  LoadForm* loads = nullptr;                     // absent without loads
+  std::vector<PairReport*> contacts;             // owned by the problem
   std::unique_ptr<UzawaMultipliers> multipliers; // absent without `uzawa` pairs
+  std::unique_ptr<MortarTransform> bounds;       // absent without `vi` pairs
   std::vector<std::string> floating;             // bodies held by contact alone
 
   /// Strain energy of all bodies. Collective.

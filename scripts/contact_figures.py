@@ -1,5 +1,4 @@
-"""Pictures of the contact surface, along it (2D) or as a map (3D): the pressure, and with friction the tangential
-traction next to its bound."""
+"""Pictures of the contact surface, along it (2D) or as a map (3D)."""
 
 import math
 
@@ -171,64 +170,4 @@ def pressure_figure(fields, title):
             draw_pressure_map(figure, panel, radial, fields, pair)
     more = f" ({left_out} further pairs not shown)" if left_out else ""
     figure.suptitle(f"{title}\ncontact pressure at t = {fields.time:.6g}{more}")
-    return figure
-
-
-def draw_friction_line(axes, fields, pair):
-    """Tangential traction along a slave curve between the bounds plus and minus tau_c."""
-    places, status, shear, bound = fields.friction(pair)
-    surface = fields.surface(pair)
-    chain = max(polylines(surface[2]), key=len)
-    pressure = np.zeros(len(surface[0])) if surface[3] is None else surface[3]
-    _, label, project = along_surface(surface[0], chain, pressure)
-    where = project(places)
-    order = np.argsort(where)
-    where, status, shear, bound = where[order], status[order], shear[order], bound[order]
-    # along the surface: the direction in which the traction is largest tells the sign
-    largest = shear[np.argmax(np.linalg.norm(shear, axis=1))]
-    along = np.copysign(np.linalg.norm(shear, axis=1), shear @ largest)
-    axes.fill_between(where, -bound, bound, color="#e9edf2", lw=0, label="within the bound")
-    for sign in (-1, 1):
-        axes.plot(where, sign * bound, lw=0.9, color=FAINT)
-    for value, colour, name in ((1, BLUE, "sticking points"), (2, ORANGE, "sliding points")):
-        axes.plot(where[status == value], along[status == value], ".", ms=3.5, color=colour, label=name)
-    touching = where[status > 0]
-    if len(touching) and np.ptp(touching) > 0.0:
-        margin = 0.3 * np.ptp(touching)
-        axes.set_xlim(touching.min() - margin, touching.max() + margin)
-    axes.set_title(pair)
-    axes.set_xlabel(label)
-    axes.set_ylabel("tangential traction")
-
-
-def draw_friction_points(axes, fields, pair):
-    """Magnitude of the tangential traction against its bound, point by point: none may lie above the line."""
-    _, status, shear, bound = fields.friction(pair)
-    size = np.linalg.norm(shear, axis=1)
-    top = 1.05 * max(bound.max(initial=0.0), size.max(initial=0.0), 1e-300)
-    axes.plot([0.0, top], [0.0, top], lw=0.9, color=INK, label="bound")
-    for value, colour, name in ((1, BLUE, "sticking points"), (2, ORANGE, "sliding points")):
-        axes.plot(bound[status == value], size[status == value], ".", ms=3, color=colour, label=name)
-    axes.set_title(pair)
-    axes.set_xlabel("bound of the tangential traction")
-    axes.set_ylabel("tangential traction")
-
-
-def friction_figure(fields, title):
-    """Tangential traction next to its bound, one panel a pair with friction."""
-    pairs = [pair for pair in fields.pairs if fields.friction(pair) is not None]
-    left_out = max(0, len(pairs) - MAX_PANELS)
-    pairs = pairs[:MAX_PANELS]
-    columns = min(3, math.ceil(math.sqrt(len(pairs))))
-    rows = math.ceil(len(pairs) / columns)
-    figure, panels = plt.subplots(rows, columns, squeeze=False, layout="constrained",
-                                  figsize=(max(7.2, 4.1 * columns), max(4.2, 2.9 * rows)))
-    for panel, pair in zip(panels.flat, pairs):
-        along_a_curve = fields.dim == 2 and fields.surface(pair) is not None
-        (draw_friction_line if along_a_curve else draw_friction_points)(panel, fields, pair)
-    for panel in panels.flat[len(pairs):]:
-        panel.axis("off")
-    panels.flat[0].legend(loc="best", fontsize=8, markerscale=2)
-    more = f" ({left_out} further pairs not shown)" if left_out else ""
-    figure.suptitle(f"{title}\ntangential traction at t = {fields.time:.6g}{more}")
     return figure

@@ -6,10 +6,11 @@ import os
 
 import numpy as np
 
-from contact_figures import friction_figure, pressure_figure
+from contact_figures import pressure_figure
 from figure_style import BLUE, ORANGE, plt
+from friction_pictures import friction_figure, frictional_pairs, hysteresis_figure, loops, overlay_figure
 from mesh_figures import mesh_figure, zoom_window
-from run_results import Fields, read_history
+from run_results import Fields, read_history, read_label
 
 
 def history_panels(columns):
@@ -36,7 +37,7 @@ def history_panels(columns):
                             lambda name: name.removeprefix("energy_").replace("_", " "))),
         ("iterations", chosen(lambda name: name.split("_")[0] in ("newton", "linear", "outer"),
                               lambda name: name.replace("_", " "))),
-        ("displacement of tied groups", chosen(lambda name: name.startswith("displacement_"),
+        ("displacement of tied groups and rigid masters", chosen(lambda name: name.startswith("displacement_"),
                                                lambda name: name[len("displacement_"):])),
     ]
     return [(name, lines) for name, lines in panels if lines]
@@ -81,8 +82,9 @@ def read_title(results, say):
     return title if summary.get("status") in (None, 0) else f"{title} [{outcome}]"
 
 
-def pictures(results, title, say):
-    """(file name, function that makes the figure) of what can be drawn; `say` is told what is missing."""
+def pictures(results, title, say, others=()):
+    """(file name, function that makes the figure) of what can be drawn; `say` is told what is missing. `others`: folders
+    of further runs to lay over this one."""
     path = os.path.join(results, "fields.h5")
     try:
         fields = Fields(path)
@@ -101,8 +103,11 @@ def pictures(results, title, say):
             yield "pressure.png", lambda: pressure_figure(fields, title)
         else:
             say("no contact pair in the fields; no pressure is drawn")
-        if any(fields.friction(pair) is not None for pair in fields.pairs):
+        if frictional_pairs(fields):
             yield "friction.png", lambda: friction_figure(fields, title)
+            if others:
+                runs = [(read_label(run), Fields(os.path.join(run, "fields.h5"))) for run in (results, *others)]
+                yield "overlay.png", lambda: overlay_figure(runs, title)
     path = os.path.join(results, "history.csv")
     try:
         columns = read_history(path)
@@ -110,3 +115,5 @@ def pictures(results, title, say):
         say(f"no history: {path} cannot be read ({error})")
     else:
         yield "history.png", lambda: history_figure(columns, title)
+        if loops(columns):
+            yield "hysteresis.png", lambda: hysteresis_figure(columns, title)

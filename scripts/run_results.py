@@ -1,6 +1,8 @@
-"""What a run leaves behind, read for pictures: the last step of fields.h5 and the columns of history.csv."""
+"""What a run leaves behind, read for pictures: the last step of fields.h5, the columns of history.csv."""
 
 import csv
+import json
+import os
 
 import h5py
 import numpy as np
@@ -85,14 +87,12 @@ class Fields:
         return np.asarray(group["places"]), *(array(group, name) for name in ("pressure", "status", "gap", "normal"))
 
     def friction(self, pair):
-        """Places, status, tangential traction (vectors) and its bound tau_c at the quadrature points of a pair; None
-        without friction."""
-        path = f"points/{pair}"
-        if path not in self.step or "shear" not in self.step[path]:
+        """Places, weight, pressure, status, shear traction and its limit at the points of a pair; None without friction."""
+        group = self.step.get(f"points/{pair}")
+        if group is None or "shear" not in group:
             return None
-        group = self.step[path]
-        shear = np.asarray(group["shear"])
-        return np.asarray(group["places"]), np.ravel(group["status"]), shear, np.ravel(group["tau_c"])
+        names = ("places", "weight", "pressure", "status", "shear", "tau_c")
+        return {name: np.squeeze(np.asarray(group[name])) for name in names}
 
 
 def read_history(path):
@@ -103,3 +103,10 @@ def read_history(path):
     width = len(rows[0])
     values = np.array([[float(cell) for cell in row] for row in rows[1:] if len(row) == width])
     return {name: values[:, i] for i, name in enumerate(rows[0])}
+
+
+def read_label(results):
+    """A run's directory and its number of increments, to tell it from others of the same scene."""
+    with open(os.path.join(results, "summary.json"), encoding="utf-8") as file:
+        increments = json.load(file)["increments"]
+    return f"{os.path.basename(os.path.abspath(results))}, {increments} increments"

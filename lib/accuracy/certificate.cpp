@@ -15,10 +15,14 @@ using accuracy::Worst;
 
 void check_fits(const CertificateInput& input) {
   const std::size_t size = std::size_t(input.mesh.num_local()) * input.mesh.dim;
-  if (input.displacement.size() != size || input.external_forces.size() != size)
-    throw std::invalid_argument("certify: displacement and external_forces need dim values for each local node");
+  if (input.displacement.size() != size || input.increment.size() != size || input.external_forces.size() != size)
+    throw std::invalid_argument(
+        "certify: displacement, increment and external_forces need dim values for each local node");
   if (input.samples.size() != input.pairs.size())
     throw std::invalid_argument("certify: there must be as many samples as pairs");
+  for (std::size_t pair = 0; pair < input.pairs.size(); ++pair)
+    if (input.samples[pair].has_friction != input.pairs[pair].friction.has_value())
+      throw std::invalid_argument("certify: samples have friction if and only if their pair has a law");
 }
 
 Certificate::Item at_most(std::string name, const Worst& worst, double tolerance) {
@@ -63,6 +67,7 @@ Certificate without_numbers(const CertificateTolerances& limits) {
   fail("volume_ratio", limits.volume_ratio);
   fail("missed_contact", limits.penetration);
   fail("friction_cone", limits.friction);
+  fail("slip", limits.slip);
   fail("dissipation", limits.friction);
   return certificate;
 }
@@ -117,6 +122,7 @@ Certificate certify(const CertificateInput& input) {
       {"volume_ratio", -volume.value, limits.volume_ratio, -volume.value > limits.volume_ratio, volume.where},
       at_most("missed_contact", overlap, limits.penetration),
       at_most("friction_cone", friction.cone, limits.friction),
+      at_most("slip", friction.slip, limits.slip),
       at_most("dissipation", friction.dissipation, limits.friction)};
   return certificate;
 }

@@ -21,7 +21,8 @@ struct CertificateTolerances {
   double balance = 1e-6;         // force and moment out of balance / force scale
   double energy = 1e-6;          // violation of the energy bounds / energy scale
   double volume_ratio = 0.0;     // smallest det(I + ∇u) / reference volume
-  double friction = 1e-6;        // shear beyond the law's limit, and negative frictional work, relative (see certify)
+  double friction = 1e-6;        // shear off the law's limit, and negative frictional work, relative (see certify)
+  double slip = 0.05; // tangential motion that is not the slip claimed / motion of the surfaces (see certify)
 };
 
 /// Energies over all ranks, the same on every rank. All cumulative since the start of the run.
@@ -51,6 +52,7 @@ struct CertificateInput {
   const Mesh& mesh;
   Space space;
   std::span<const double> displacement;    // num_local x dim, ghosts up to date
+  std::span<const double> increment;       // of the displacement since the last accepted state, likewise
   std::span<const ContactPairNames> pairs; // the same on every rank
   std::span<const ContactSamples> samples; // of this rank, one a pair
   /// num_local x dim: this rank's parts of the applied loads and of the support reactions (their sums over ranks
@@ -73,14 +75,19 @@ struct Certificate {
     std::string where; // the worst place, in words; may be empty
   };
   /// penetration, tension, complementarity, force_balance, moment_balance, body_balance, virtual_work, energy,
-  /// volume_ratio, missed_contact, friction_cone, dissipation: always all of them, in this order.
+  /// volume_ratio, missed_contact, friction_cone, slip, dissipation: always all of them, in this order.
   std::vector<Item> items;
   bool passed() const;
 };
 
-/// friction_cone: shear beyond the limit claimed for the point, shear out of the tangent plane, and shear without
-/// contact, relative to the pair's largest shear. dissipation: negative work of shear on slip, relative to Σ |shear|
-/// slip. Checks everything; the same result on every rank. Throws std::invalid_argument when the input does not fit
+/// friction_cone: the pair's law is asked anew for its limit at the pressure and slip claimed; shear beyond it (in
+/// slip: off it), shear out of the tangent plane and shear without contact, relative to the pair's largest limit or
+/// shear. slip: Σ |shear| |Δg_t − slip| over Σ |shear| times the largest displacement increment on the surfaces, with
+/// Δg_t the tangential motion in this increment that a fresh search finds: what is said to stick must not move and what
+/// is said to slip must have moved so. A penalty's elastic slip shows here as its penetration does in `penetration`.
+/// dissipation: negative work of shear on slip, relative to Σ |shear| slip.
+///
+/// Checks everything; the same result on every rank. Throws std::invalid_argument when the input does not fit
 /// together. Collective.
 Certificate certify(const CertificateInput& input);
 

@@ -44,7 +44,7 @@ Worst check_overlap(const CertificateInput& input);
 
 /// What the frictional pairs claim; zero without friction (see certify).
 struct FrictionChecks {
-  Worst cone, dissipation;
+  Worst cone, slip, dissipation;
 };
 /// Collective.
 FrictionChecks check_friction(const CertificateInput& input);

@@ -19,32 +19,11 @@ struct PairPoints {
   std::size_t num_claimed = 0;
 };
 
-SlavePoint slave_point(const CertificateInput& input, const FacetSet& slave, std::int32_t f,
-                       std::span<const double> xi) {
-  const Mesh& mesh = input.mesh;
-  const ElementType type = slave.types[f];
-  const auto nodes = slave.facet(f);
-  const auto positions = nodal_values(mesh, mesh.coordinates, nodes);
-  const auto moved = nodal_values(mesh, input.displacement, nodes);
-  std::array<double, 9> shape;
-  const auto at = xi.first(element_dim(type));
-  shape_values(type, at, std::span(shape).first(nodes.size()));
-  SlavePoint point;
-  for (std::size_t a = 0; a < nodes.size(); ++a)
-    for (int c = 0; c < mesh.dim; ++c) {
-      point.place[c] += shape[a] * positions[a * mesh.dim + c];
-      point.displacement[c] += shape[a] * moved[a * mesh.dim + c];
-    }
-  facet_normal(type, positions, at, point.normal);
-  point.size = facet_size(type, positions);
-  return point;
-}
-
 /// The certificate's own points: every node of every slave facet, and a quadrature rule inside.
 PairPoints points_of_pair(const CertificateInput& input, const FacetSet& slave, const ContactSamples& samples) {
   PairPoints result;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    result.points.push_back(slave_point(input, slave, samples.facet[i], samples.xi[i]));
+    result.points.push_back(slave_point(input.mesh, input.displacement, slave, samples.facet[i], samples.xi[i]));
   result.num_claimed = samples.size();
   for (std::int32_t f = 0; f < slave.size(); ++f) {
     const auto nodes = reference_nodes(slave.types[f]);
@@ -52,7 +31,7 @@ PairPoints points_of_pair(const CertificateInput& input, const FacetSet& slave, 
     const std::size_t d = element_dim(slave.types[f]);
     for (const std::span<const double> places : {nodes, std::span<const double>(rule.points)})
       for (std::size_t at = 0; at < places.size(); at += d)
-        result.points.push_back(slave_point(input, slave, f, places.subspan(at, d)));
+        result.points.push_back(slave_point(input.mesh, input.displacement, slave, f, places.subspan(at, d)));
   }
   return result;
 }
@@ -69,6 +48,13 @@ std::vector<MasterHit> find_on_shape(const MovedShape& master, const Mesh& mesh,
     hits.push_back(hit);
   }
   return hits;
+}
+
+std::vector<MasterHit> find_on_surface(const CertificateInput& input, const ContactPairNames& names,
+                                       std::span<const SlavePoint> points) {
+  const FacetSet& master = input.mesh.surfaces.at(std::get<std::string>(names.master));
+  const double reach = reach_of(input.mesh, input.displacement, master, points);
+  return find_on_master(input.mesh, input.displacement, master, points, reach);
 }
 
 /// The gap that a claimed pressure is held against: where there is no master the distance to it, at least a facet.
@@ -111,9 +97,7 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
     const PairPoints all = points_of_pair(input, slave, samples);
     const auto* shape = std::get_if<MovedShape>(&names.master);
     const std::vector<MasterHit> hits =
-        shape != nullptr ? find_on_shape(*shape, mesh, all.points)
-                         : find_on_master(mesh, input.displacement,
-                                          mesh.surfaces.at(std::get<std::string>(names.master)), all.points);
+        shape != nullptr ? find_on_shape(*shape, mesh, all.points) : find_on_surface(input, names, all.points);
     for (std::size_t i = 0; i < hits.size(); ++i) {
       if (!hits[i].found || hits[i].beyond > 0.0) continue;
       result.penetration.offer(-hits[i].gap / all.points[i].size, [&] {
@@ -148,10 +132,17 @@ Worst check_tension(const CertificateInput& input) {
         largest[pair] = std::max(largest[pair], pressure);
   MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, mesh.comm);
   const double overall = largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
+  std::vector<double> areas(input.pairs.size(), 0.0);
+  for (std::size_t pair = 0; pair < areas.size(); ++pair)
+    for (const double weight : input.samples[pair].weight)
+      areas[pair] += weight;
+  MPI_Allreduce(MPI_IN_PLACE, areas.data(), static_cast<int>(areas.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
   Worst worst;
   for (std::size_t pair = 0; pair < largest.size(); ++pair) {
     const ContactSamples& samples = input.samples[pair];
-    const double scale = std::max(largest[pair], pressure_floor * overall);
+    // With every pair open the pressures are rounding, and so is the largest of them.
+    const double rounding = areas[pair] > 0.0 ? input.force_floor / areas[pair] : 0.0;
+    const double scale = std::max({largest[pair], pressure_floor * overall, rounding});
     const auto offer = [&](double pressure, std::span<const double> place) {
       if (pressure >= 0.0) return;
       worst.offer(-pressure / scale, [&] { return "pair '" + input.pairs[pair].name + "' at " + place_text(place); });

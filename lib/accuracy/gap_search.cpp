@@ -1,5 +1,7 @@
 #include "accuracy/gap_search.hpp"
 
+#include "math/reference_element.hpp"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -100,6 +102,7 @@ MasterHit hit_of(const FacetCloud& master, const Nearest& nearest, const SlavePo
   if (height < 0.0 && (-height > std::max(size, point.size) || nearest.back < nearest.distance)) return hit;
   hit.found = true;
   hit.body = master.body(f);
+  hit.jump = {moved[0], moved[1], moved[2]};
   if (projection.feature == Feature::Facet)
     hit.gap = height + vector(projection.normal).dot(moved);
   else
@@ -107,8 +110,28 @@ MasterHit hit_of(const FacetCloud& master, const Nearest& nearest, const SlavePo
   return hit;
 }
 
-/// How far apart two points may be in the reference configuration and still meet: the largest difference between
-/// displacements of the two surfaces, and a facet. Collective.
+} // namespace
+
+SlavePoint slave_point(const Mesh& mesh, std::span<const double> displacement, const FacetSet& slave, std::int32_t f,
+                       std::span<const double> xi) {
+  const ElementType type = slave.types[f];
+  const auto nodes = slave.facet(f);
+  const auto positions = nodal_values(mesh, mesh.coordinates, nodes);
+  const auto moved = nodal_values(mesh, displacement, nodes);
+  std::array<double, 9> shape;
+  const auto at = xi.first(element_dim(type));
+  shape_values(type, at, std::span(shape).first(nodes.size()));
+  SlavePoint point;
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (int c = 0; c < mesh.dim; ++c) {
+      point.place[c] += shape[a] * positions[a * mesh.dim + c];
+      point.displacement[c] += shape[a] * moved[a * mesh.dim + c];
+    }
+  facet_normal(type, positions, at, point.normal);
+  point.size = facet_size(type, positions);
+  return point;
+}
+
 double reach_of(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
                 std::span<const SlavePoint> points) {
   Box range;
@@ -126,8 +149,6 @@ double reach_of(const Mesh& mesh, std::span<const double> displacement, const Fa
   MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_DOUBLE, MPI_MAX, mesh.comm);
   return range.diagonal() + size;
 }
-
-} // namespace
 
 double distance_to_cone(const std::array<double, 3>& r, std::span<const std::array<double, 3>> normals) {
   // The closest point of the cone is a combination of at most three of the normals, and then the orthogonal projection
@@ -162,8 +183,7 @@ double distance_to_cone(const std::array<double, 3>& r, std::span<const std::arr
 }
 
 std::vector<MasterHit> find_on_master(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
-                                      std::span<const SlavePoint> points) {
-  const double reach = reach_of(mesh, displacement, master, points);
+                                      std::span<const SlavePoint> points, double reach) {
   Box wanted;
   for (const SlavePoint& point : points)
     wanted.include(std::span(point.place).first(mesh.dim));

@@ -27,12 +27,21 @@ struct MasterHit {
   double gap = 0.0;       // beyond the rim of the master: of the surface continued straight on
   double beyond = 0.0;    // distance beyond the rim; zero over the surface. Points beyond the rim do not penetrate.
   std::int32_t body = -1; // of the master facet
+  std::array<double, 3> jump{}; // u_s − u_m(ξ)
 };
 
-/// Searches the master for every point of this rank. A master facet farther than the displacements can bridge is not
-/// looked at. Collective.
+/// Point ξ of a facet of the slave surface with this displacement (num_local x dim).
+SlavePoint slave_point(const Mesh& mesh, std::span<const double> displacement, const FacetSet& slave, std::int32_t f,
+                       std::span<const double> xi);
+
+/// How far apart two points may be in the reference configuration and still meet: the largest difference between
+/// displacements of the two surfaces, and a facet. Collective.
+double reach_of(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
+                std::span<const SlavePoint> points);
+
+/// Searches the master for every point of this rank. A master facet farther than `reach` is not looked at. Collective.
 std::vector<MasterHit> find_on_master(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
-                                      std::span<const SlavePoint> points);
+                                      std::span<const SlavePoint> points, double reach);
 
 /// Distance of r from the cone of the combinations Σ a_i n_i, a_i >= 0, of unit vectors.
 double distance_to_cone(const std::array<double, 3>& r, std::span<const std::array<double, 3>> normals);

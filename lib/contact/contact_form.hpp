@@ -5,6 +5,7 @@
 #include "contact/contact_pair.hpp"
 #include "contact/contact_points.hpp"
 #include "contact/contact_samples.hpp"
+#include "contact/pair_report.hpp"
 #include "contact/tangential_part.hpp"
 #include "form/form.hpp"
 
@@ -18,21 +19,7 @@ namespace amontons {
 /// both).
 NodeField multiplier_nodes(const Mesh& mesh, const std::string& pair, const std::string& slave);
 
-/// Totals of one pair over all ranks.
-struct ContactTotals {
-  std::array<double, 3> force{};    // on the slave
-  std::array<double, 3> moment{};   // of that force about the origin (reference places)
-  double area = 0.0;                // of slave points in contact, weighted
-  double max_pressure = 0.0;        // nodal
-  double largest_penetration = 0.0; // −g over the points in contact, relative to the facet size
-  // Zero without friction:
-  std::array<double, 3> tangential_force{}; // on the slave; part of `force`
-  double stick_area = 0.0, slip_area = 0.0;
-  double dissipation = 0.0; // in the increment since the last accepted state
-  double path_error = 0.0;  // of the shear's energy in that increment (TangentialPart::sums)
-};
-
-class ContactForm : public Form {
+class ContactForm : public Form, public PairReport {
  public:
   /// Searches. Collective.
   ContactForm(const DofLayout& layout, ContactPair pair);
@@ -48,30 +35,22 @@ class ContactForm : public Form {
   double stored_energy(const State& state) override;
   bool tangent_is_symmetric() const override { return !tangential_; }
 
-  const ContactPair& pair() const { return pair_; }
-  const NodeField& nodes() const { return nodes_; }
+  const ContactPair& pair() const override { return pair_; }
+  const NodeField& nodes() const override { return nodes_; }
 
-  /// Traction per unknown multiplier of the layout's extra field (`semismooth`).
-  double multiplier_scale() const { return scale_; }
-  /// Multipliers at nodes(), held (Uzawa) or as of the last evaluation (semismooth): traction, <= 0 in contact.
-  const std::vector<double>& multipliers() const { return multipliers_; }
-  void hold_multipliers(std::vector<double> multipliers);
+  double multiplier_scale() const override { return scale_; }
+  const std::vector<double>& multipliers() const override { return multipliers_; }
+  void hold_multipliers(std::vector<double> multipliers) override;
   /// This rank's parts of ∫ N_i (σ − λ_i) and ∫ N_i at nodes(). Collective.
   void multiplier_defect(const State& state, std::vector<double>& defect, std::vector<double>& mass);
 
-  /// Absent without friction.
-  const TangentialPart* tangential() const { return tangential_.get(); }
+  const TangentialPart* tangential() const override { return tangential_.get(); }
   TangentialPart* tangential() { return tangential_.get(); }
 
-  /// What the solver claims, point by point, with the nodal pressure summed over ranks. Collective.
-  ContactSamples samples(const State& state);
-  /// Collective.
-  ContactTotals totals(const State& state);
-  /// ∫ σ n·(u_slave − u_master) + σ_t·(u_slave − u_master): the contact tractions' virtual work on the displacement
-  /// itself, over all ranks (a rigid master's motion not included). Collective.
-  double work_of_displacement(const State& state);
-  /// The rigid master where it is now.
-  std::array<double, 3> rigid_shift() const { return points_.rigid_shift(); }
+  ContactSamples samples(const State& state) override;
+  ContactTotals totals(const State& state) override;
+  double work_of_displacement(const State& state) override;
+  std::array<double, 3> rigid_shift() const override { return points_.rigid_shift(); }
 
  private:
   struct Group; // consecutive points of one slave facet with one master facet

@@ -26,13 +26,25 @@ struct ClosestPoint {};
 struct SlaveNormal {};
 using ProjectionKind = std::variant<ClosestPoint, SlaveNormal>;
 
-/// Where λ comes from: nowhere, an outer loop, or an unknown of the system (extra field number `field` of the layout).
+/// How the slave surface is integrated over: by a rule on each slave facet, or on the pieces of slave facets that
+/// single master facets cover. `degree`: of polynomials that are integrated exactly on a facet or piece.
+struct FacetIntegration {
+  int degree = 4;
+};
+struct SegmentIntegration {
+  int degree = 4;
+};
+using Integration = std::variant<FacetIntegration, SegmentIntegration>;
+
+/// Where λ comes from: nowhere, an outer loop, an unknown of the system (extra field number `field` of the layout), or
+/// the force on a bound of the normal motion.
 struct Penalty {};
 struct Uzawa {};
 struct Semismooth {
   int field;
 };
-using Enforcement = std::variant<Penalty, Uzawa, Semismooth>;
+struct BoundConstraint {};
+using Enforcement = std::variant<Penalty, Uzawa, Semismooth, BoundConstraint>;
 
 /// Friction of a pair. Unknown tangential multipliers (`semismooth`) are the dim extra fields from `field` on.
 struct Friction {
@@ -47,9 +59,9 @@ struct ContactPair {
   std::variant<std::string, RigidMaster> master;
   Enforcement enforcement;
   ProjectionKind projection;
-  int integration_degree = 4;   // polynomials integrated exactly on a slave facet
-  double alpha = 1.0;           // dimensionless augmentation: ε = alpha · stiffness / h
-  double search_distance = 0.0; // farther master facets are not looked at
+  Integration integration = FacetIntegration{}; // segment: with a meshed master only
+  double alpha = 1.0;                           // dimensionless augmentation: ε = alpha · stiffness / h
+  double search_distance = 0.0;                 // farther master facets are not looked at
   Space space = Space::Solid;
   /// A body of this pair is held by contact alone: then contact is guessed where the surfaces are nearest when nothing
   /// touches yet.

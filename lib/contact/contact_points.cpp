@@ -1,19 +1,25 @@
 #include "contact/contact_points.hpp"
 
+#include "fe/node_numbering.hpp"
 #include "geometry/projection.hpp"
+#include "geometry/segment_quadrature.hpp"
 #include "math/reference_element.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace amontons {
 
 namespace {
 
 /// Slave and master must face each other: cosine of the angle between outward normals below this.
-constexpr double facing = -0.1;
+constexpr double facing_cosine = -0.1;
 /// A projection onto the rim of the master counts when the point stands over it within this part of a facet.
 constexpr double rim_tolerance = 1e-6;
+
+/// A node has a master when this part of its support does; the equation of its multiplier is no smaller than that.
+constexpr double least_cover = 1e-6;
 
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0.0;
@@ -29,6 +35,10 @@ std::vector<double> facet_positions(const Mesh& mesh, std::span<const std::int32
     positions.insert(positions.end(), place.begin(), place.end());
   }
   return positions;
+}
+
+std::array<double, 2> centre_of(ElementType type) {
+  return num_vertices(type) == 3 ? std::array{1.0 / 3.0, 1.0 / 3.0} : std::array{0.0, 0.0};
 }
 
 /// Corners of the facet between which ξ lies: one for a vertex, two for an edge.
@@ -59,56 +69,196 @@ std::vector<std::int32_t> corners_at(ElementType type, Feature feature, std::spa
 
 ContactPoints::ContactPoints(const DofLayout& layout, const ContactPair& pair)
     : mesh_(layout.mesh()), pair_(pair), slave_(&mesh_.surfaces.at(pair.slave)) {
-  place_points();
-  if (const auto* surface = std::get_if<std::string>(&pair.master)) {
-    Box reach;
-    for (const auto& point : points_)
-      reach.include(point.place);
-    if (!reach.empty()) reach.inflate(pair.search_distance);
-    if (mesh_.dim == 2) reach.low[2] = reach.high[2] = 0.0;
-    master_ = std::make_unique<MasterSurface>(layout, mesh_.surfaces.at(*surface), reach);
+  if (const auto* surface = std::get_if<std::string>(&pair.master)) gather_master(layout, *surface);
+  if (const auto* segment = std::get_if<SegmentIntegration>(&pair.integration); segment && master_)
+    place_by_segments(segment->degree);
+  else
+    place_by_rule(std::visit([](const auto& integration) { return integration.degree; }, pair.integration));
+  if (master_) {
     search();
+    average_over_master();
   } else {
     move_rigid_master(0.0);
   }
+  scratch_ = {};
 }
 
-void ContactPoints::place_points() {
-  const int d = mesh_.dim;
+void ContactPoints::gather_master(const DofLayout& layout, const std::string& surface) {
+  Box reach;
+  for (const auto node : slave_->nodes)
+    reach.include(mesh_.position(node));
+  if (!reach.empty()) reach.inflate(pair_.search_distance);
+  if (mesh_.dim == 2) reach.low[2] = reach.high[2] = 0.0;
+  master_ = std::make_unique<MasterSurface>(layout, mesh_.surfaces.at(surface), reach);
+}
+
+// --- placing ---------------------------------------------------------------------------------------------------------
+
+void ContactPoints::place_by_rule(int degree) {
+  std::map<ElementType, std::vector<std::size_t>> values; // of the rule's points
   for (std::int32_t f = 0; f < slave_->size(); ++f) {
     const auto type = slave_->types[f];
-    const auto nodes = slave_->facet(f);
-    const auto positions = facet_positions(mesh_, nodes);
-    const double size = facet_size(type, positions);
-    const auto& table = tabulation(type, pair_.integration_degree);
-    for (int q = 0; q < table.rule->size(); ++q) {
-      ContactPoint point{.facet = f, .rule_point = q};
+    const auto& rule = quadrature(type, degree);
+    auto& rows = values[type];
+    for (int q = static_cast<int>(rows.size()); q < rule.size(); ++q)
+      rows.push_back(add_values(type, rule.point(q)));
+    const auto positions = facet_positions(mesh_, slave_->facet(f));
+    for (int q = 0; q < rule.size(); ++q) {
       std::array<double, 3> normal{};
-      const double measure = facet_normal(type, positions, table.rule->point(q), normal);
-      const auto shape = table.value(q);
-      for (std::size_t a = 0; a < nodes.size(); ++a)
-        for (int c = 0; c < d; ++c)
-          point.place[c] += shape[a] * positions[a * d + c];
-      point.size = size;
-      point.weight = table.rule->weights[q] * measure * circumference(pair_.space, point.place[0]);
-      points_.push_back(point);
-      slave_normals_.push_back(normal);
+      const double measure = facet_normal(type, positions, rule.point(q), normal);
+      add_point(f, positions, rule.point(q), rule.weights[q] * measure, rows[q], ContactPoint::none);
     }
   }
 }
 
+void ContactPoints::place_by_segments(int degree) {
+  for (std::int32_t f = 0; f < slave_->size(); ++f) {
+    const auto type = slave_->types[f];
+    const auto positions = facet_positions(mesh_, slave_->facet(f));
+    const auto across = facets_across(f);
+    std::vector<FacetNodes> others;
+    for (const auto facet : across)
+      others.push_back({master_->type(facet), master_->positions(facet)});
+    for (const auto& point : segment_quadrature({type, positions}, others, degree)) {
+      const std::span<const double> xi(point.xi.data(), element_dim(type));
+      const bool is_covered = point.other != SegmentPoint::uncovered;
+      add_point(f, positions, xi, point.weight, add_values(type, xi),
+                is_covered ? across[point.other] : ContactPoint::none);
+    }
+  }
+}
+
+/// Master facets within reach of a slave facet across its mean normal that face it, in an order that does not depend on
+/// the number of ranks.
+std::vector<std::int32_t> ContactPoints::facets_across(std::int32_t facet) {
+  const std::size_t d = mesh_.dim;
+  const auto type = slave_->types[facet];
+  const auto positions = facet_positions(mesh_, slave_->facet(facet));
+  std::array<double, 3> normal{};
+  facet_normal(type, positions, centre_of(type), normal);
+  Box box;
+  for (std::size_t at = 0; at < positions.size(); at += d)
+    for (const double s : {-pair_.search_distance, pair_.search_distance}) {
+      std::array<double, 3> end{};
+      for (std::size_t c = 0; c < d; ++c)
+        end[c] = positions[at + c] + s * normal[c];
+      box.include(std::span<const double>(end.data(), d));
+    }
+  box.inflate(1e-9 * box.diagonal());
+  master_->tree().query(box, found_);
+  std::vector<std::pair<std::array<double, 3>, std::int32_t>> facing;
+  for (const auto candidate : found_) {
+    const auto nodes = master_->positions(candidate);
+    std::array<double, 3> other{}, sum{};
+    facet_normal(master_->type(candidate), nodes, centre_of(master_->type(candidate)), other);
+    if (dot(normal, other) > facing_cosine) continue;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      sum[i % d] += nodes[i];
+    facing.emplace_back(sum, candidate);
+  }
+  std::sort(facing.begin(), facing.end());
+  std::vector<std::int32_t> facets;
+  for (const auto& [place, candidate] : facing)
+    facets.push_back(candidate);
+  return facets;
+}
+
+/// `area`: part of the facet's reference area that the point stands for; `values`: its row.
+void ContactPoints::add_point(std::int32_t facet, std::span<const double> positions, std::span<const double> xi,
+                              double area, std::size_t values, std::int32_t guess) {
+  const int d = mesh_.dim;
+  const auto type = slave_->types[facet];
+  const std::size_t behind_slave = element_order(type) == 1 ? 0 : num_nodes(type);
+  ContactPoint point{.facet = facet, .values = values, .multipliers = values + 2 + behind_slave};
+  Scratch scratch{.slave_normal = {}, .guess = guess};
+  facet_normal(type, positions, xi, scratch.slave_normal);
+  const auto shape = slave_shape(point);
+  for (std::size_t a = 0; a < shape.size(); ++a)
+    for (int c = 0; c < d; ++c)
+      point.place[c] += shape[a] * positions[a * d + c];
+  point.size = facet_size(type, positions);
+  point.weight = area * circumference(pair_.space, point.place[0]);
+  points_.push_back(point);
+  scratch_.push_back(scratch);
+}
+
+/// Returns where the row begins.
+std::size_t ContactPoints::add_values(ElementType type, std::span<const double> xi) {
+  const std::size_t row = values_.size();
+  values_.push_back(xi[0]);
+  values_.push_back(xi.size() > 1 ? xi[1] : 0.0);
+  const auto append = [&](ElementType element) {
+    values_.resize(values_.size() + num_nodes(element));
+    shape_values(element, xi, std::span(values_).last(num_nodes(element)));
+  };
+  append(type);
+  if (element_order(type) > 1) append(linear_element(type));
+  return row;
+}
+
+// --- searching -------------------------------------------------------------------------------------------------------
+
 void ContactPoints::search() {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (std::holds_alternative<SlaveNormal>(pair_.projection))
-      find_along_normal(points_[i], slave_normals_[i]);
+      find_along_normal(points_[i], scratch_[i].slave_normal);
     else
-      find_closest(points_[i], slave_normals_[i]);
+      find_closest(points_[i], scratch_[i]);
     set_epsilon(points_[i]);
   }
-  std::stable_sort(points_.begin(), points_.end(), [](const ContactPoint& a, const ContactPoint& b) {
-    return a.facet != b.facet ? a.facet < b.facet : a.master < b.master;
-  });
-  slave_normals_.clear();
+  order_by_master();
+}
+
+/// Brings the points of a slave facet that have found the same master facet together, in the order in which the facet's
+/// points came upon their masters.
+void ContactPoints::order_by_master() {
+  std::vector<ContactPoint> ordered;
+  ordered.reserve(points_.size());
+  std::vector<std::int32_t> masters;
+  for (std::size_t begin = 0, end = 0; begin < points_.size(); begin = end) {
+    masters.clear();
+    for (end = begin; end < points_.size() && points_[end].facet == points_[begin].facet; ++end)
+      if (std::find(masters.begin(), masters.end(), points_[end].master) == masters.end())
+        masters.push_back(points_[end].master);
+    for (const auto master : masters)
+      for (std::size_t i = begin; i < end; ++i)
+        if (points_[i].master == master) ordered.push_back(points_[i]);
+  }
+  points_ = std::move(ordered);
+}
+
+/// Takes the points without a master out of the multiplier basis of nodes that have a master in part of their support.
+void ContactPoints::average_over_master() {
+  NodeSpace space(mesh_, {{.name = pair_.slave, .nodes = mesh_.node_groups.at(pair_.slave)}});
+  const auto& nodes = space.fields()[0].nodes;
+  std::vector<std::int32_t> position(mesh_.num_local(), -1);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    position[nodes[i]] = static_cast<std::int32_t>(i);
+  std::vector<std::vector<double>> covered(1, std::vector<double>(nodes.size(), 0.0)), all = covered;
+  for (const auto& point : points_) {
+    const auto shape = multiplier_shape(point);
+    for (std::size_t a = 0; a < shape.size(); ++a) {
+      const auto at = position[slave_->facet(point.facet)[a]];
+      all[0][at] += point.weight * shape[a];
+      if (point.master != ContactPoint::none) covered[0][at] += point.weight * shape[a];
+    }
+  }
+  for (auto* part : {&covered, &all}) { // sums over the ranks that share a node
+    const auto global = space.new_vector();
+    space.add(*part, global);
+    space.gather(global, *part);
+  }
+  for (auto& point : points_) {
+    if (point.master != ContactPoint::none) continue;
+    const auto shape = multiplier_shape(point);
+    std::vector<double> rest(shape.begin(), shape.end());
+    for (std::size_t a = 0; a < rest.size(); ++a) {
+      const auto at = position[slave_->facet(point.facet)[a]];
+      if (covered[0][at] > least_cover * all[0][at]) rest[a] = 0.0;
+    }
+    point.multipliers = values_.size();
+    values_.insert(values_.end(), rest.begin(), rest.end());
+  }
 }
 
 void ContactPoints::set_epsilon(ContactPoint& point) const {
@@ -128,30 +278,33 @@ void ContactPoints::attach(ContactPoint& point, std::int32_t facet, std::span<co
 
 /// The closest facing master point. n is the facet's normal inside a facet; on an edge or vertex that the surface
 /// continues across, the direction from the projection to the point (or away from it, for a penetrating point).
-void ContactPoints::find_closest(ContactPoint& point, std::span<const double> slave_normal) {
+void ContactPoints::find_closest(ContactPoint& point, const Scratch& scratch) {
   const int d = mesh_.dim;
   const std::span<const double> x(point.place.data(), d);
   double best = pair_.search_distance;
   Projection nearest;
   std::int32_t facet = ContactPoint::none;
-  // Look in a box that doubles until something is found inside of it.
-  for (double radius = std::min(point.size, best); facet == ContactPoint::none; radius *= 2.0) {
-    radius = std::min(radius, pair_.search_distance);
+  const auto consider = [&](std::int32_t candidate, double radius) {
+    const auto projection = closest_point(master_->type(candidate), master_->positions(candidate), x);
+    if (!projection.found || projection.distance > std::min(best, radius)) return;
+    if (dot(projection.normal, std::span(scratch.slave_normal).first(d)) > facing_cosine) return;
+    const bool tie = facet != ContactPoint::none && projection.distance > best * (1.0 - 1e-12);
+    if (tie && projection.feature != Feature::Facet) return;
+    best = projection.distance;
+    nearest = projection;
+    facet = candidate;
+  };
+  if (scratch.guess != ContactPoint::none) consider(scratch.guess, best);
+  // Nothing farther than the guess can be nearest. Without one: a box that doubles until something is found in it.
+  double radius = std::min(facet == ContactPoint::none ? point.size : best, pair_.search_distance);
+  for (;; radius = std::min(2.0 * radius, pair_.search_distance)) {
     Box box;
     box.include(x);
     box.inflate(radius);
     master_->tree().query(box, found_);
-    for (const auto candidate : found_) {
-      const auto projection = closest_point(master_->type(candidate), master_->positions(candidate), x);
-      if (!projection.found || projection.distance > std::min(best, radius)) continue;
-      if (dot(projection.normal, slave_normal.first(d)) > facing) continue;
-      const bool tie = facet != ContactPoint::none && projection.distance > best * (1.0 - 1e-12);
-      if (tie && projection.feature != Feature::Facet) continue;
-      best = projection.distance;
-      nearest = projection;
-      facet = candidate;
-    }
-    if (radius >= pair_.search_distance) break;
+    for (const auto candidate : found_)
+      if (candidate != scratch.guess) consider(candidate, radius);
+    if (facet != ContactPoint::none || radius >= pair_.search_distance) break;
   }
   if (facet == ContactPoint::none) return;
 
@@ -198,7 +351,7 @@ void ContactPoints::find_along_normal(ContactPoint& point, std::span<const doubl
     const auto projection =
         project_along(master_->type(candidate), master_->positions(candidate), x, slave_normal.first(d));
     if (!projection.found || projection.distance > best) continue;
-    if (dot(projection.normal, slave_normal.first(d)) > facing) continue;
+    if (dot(projection.normal, slave_normal.first(d)) > facing_cosine) continue;
     best = projection.distance;
     point.gap0 = 0.0;
     for (int c = 0; c < d; ++c) {
@@ -222,15 +375,6 @@ void ContactPoints::move_rigid_master(double t) {
   }
 }
 
-std::span<const double> ContactPoints::slave_shape(const ContactPoint& point) const {
-  return tabulation(slave_->types[point.facet], pair_.integration_degree).value(point.rule_point);
-}
-
-std::span<const double> ContactPoints::multiplier_shape(const ContactPoint& point) const {
-  const auto type = linear_element(slave_->types[point.facet]);
-  return tabulation(type, pair_.integration_degree).value(point.rule_point);
-}
-
 std::array<double, 3> ContactPoints::displacement_jump(const ContactPoint& point, const State& state) const {
   const int d = mesh_.dim;
   std::array<double, 3> jump{};
@@ -247,12 +391,6 @@ std::array<double, 3> ContactPoints::displacement_jump(const ContactPoint& point
       jump[c] -= point.master_shape[b] * displacement[c];
   }
   return jump;
-}
-
-std::array<double, 2> ContactPoints::xi(const ContactPoint& point) const {
-  const auto& rule = quadrature(slave_->types[point.facet], pair_.integration_degree);
-  const auto place = rule.point(point.rule_point);
-  return {place[0], place.size() > 1 ? place[1] : 0.0};
 }
 
 } // namespace amontons

@@ -16,8 +16,9 @@ namespace amontons {
 /// A quadrature point of the slave surface.
 struct ContactPoint {
   std::int32_t facet;         // of the slave FacetSet
-  std::int32_t rule_point;    // index of the point in the facet's quadrature rule
   std::int32_t master = none; // facet of the MasterSurface, or one of the marks below
+  std::size_t values;         // where ContactPoints keeps its ξ and slave shape functions,
+  std::size_t multipliers;    // and its multiplier basis
   double weight = 0.0;        // area
   double size = 0.0;          // h of the slave facet
   double epsilon = 0.0;       // augmentation parameter, force / volume
@@ -30,7 +31,8 @@ struct ContactPoint {
   static constexpr std::int32_t rigid = -2; // the pair's rigid shape
 };
 
-/// The points of a pair on this rank, facet by facet; within a facet those with the same master facet stand together.
+/// The points of a pair on this rank, facet by facet; within a facet those with the same master facet stand together,
+/// in an order that does not depend on the number of ranks.
 class ContactPoints {
  public:
   /// Searches the master. Collective.
@@ -40,10 +42,20 @@ class ContactPoints {
   const std::vector<ContactPoint>& points() const { return points_; }
   MasterSurface* master() const { return master_.get(); }
   bool has_rigid_master() const { return !master_; }
-  /// Values of the slave facet's shape functions, and of its multiplier basis (linear), at a point.
-  std::span<const double> slave_shape(const ContactPoint& point) const;
-  std::span<const double> multiplier_shape(const ContactPoint& point) const;
-  std::array<double, 2> xi(const ContactPoint& point) const;
+  /// Values of the slave facet's shape functions at a point.
+  std::span<const double> slave_shape(const ContactPoint& point) const {
+    return std::span(values_).subspan(point.values + 2, num_nodes(slave_->types[point.facet]));
+  }
+  /// Values of the facet's multiplier basis (linear). A point without a master, which is open for good, counts only for
+  /// nodes that have no master anywhere around them: theirs is zero, and all others are an average over the area that
+  /// has a master.
+  std::span<const double> multiplier_shape(const ContactPoint& point) const {
+    return std::span(values_).subspan(point.multipliers, num_vertices(slave_->types[point.facet]));
+  }
+  /// Place on the slave facet.
+  std::array<double, 2> xi(const ContactPoint& point) const {
+    return {values_[point.values], values_[point.values + 1]};
+  }
   /// u_slave − u_master at a point, with the master's displacements as of its last refresh (a rigid master's motion is
   /// not in it).
   std::array<double, 3> displacement_jump(const ContactPoint& point, const State& state) const;
@@ -52,9 +64,22 @@ class ContactPoints {
   std::array<double, 3> rigid_shift() const { return shift_; }
 
  private:
-  void place_points();
+  /// What the search needs to know of a point besides its place.
+  struct Scratch {
+    std::array<double, 3> slave_normal;
+    std::int32_t guess; // master facet that is likely to be the nearest, or none
+  };
+  void gather_master(const DofLayout& layout, const std::string& surface);
+  void place_by_rule(int degree);
+  void place_by_segments(int degree);
+  std::vector<std::int32_t> facets_across(std::int32_t facet);
+  void add_point(std::int32_t facet, std::span<const double> positions, std::span<const double> xi, double area,
+                 std::size_t values, std::int32_t guess);
+  std::size_t add_values(ElementType type, std::span<const double> xi);
+  void average_over_master();
   void search();
-  void find_closest(ContactPoint& point, std::span<const double> slave_normal);
+  void order_by_master();
+  void find_closest(ContactPoint& point, const Scratch& scratch);
   void find_along_normal(ContactPoint& point, std::span<const double> slave_normal);
   void attach(ContactPoint& point, std::int32_t facet, std::span<const double> xi) const;
   void set_epsilon(ContactPoint& point) const;
@@ -63,7 +88,10 @@ class ContactPoints {
   const ContactPair& pair_;
   const FacetSet* slave_;
   std::vector<ContactPoint> points_;
-  std::vector<std::array<double, 3>> slave_normals_; // per point
+  /// ξ (two numbers), slave shape functions, multiplier basis where it differs (order 2). Rows of a rule on facets are
+  /// shared by all facets of a type, those on segments belong to one point.
+  std::vector<double> values_;
+  std::vector<Scratch> scratch_; // per point, during construction
   std::unique_ptr<MasterSurface> master_;
   std::array<double, 3> shift_{};
   std::vector<std::int32_t> found_; // scratch

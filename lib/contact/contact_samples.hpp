@@ -2,10 +2,12 @@
 // data: the output writes it, the certificate checks it.
 #pragma once
 
+#include "friction/friction_law.hpp"
 #include "geometry/rigid_shape.hpp"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -30,6 +32,8 @@ struct ContactSamples {
   std::vector<double> tau_c;                // the law's limit of |shear|
   std::vector<std::array<double, 3>> slip;  // of the slave over the master in this increment
   std::vector<double> accumulated_slip;
+  std::vector<FrictionContext> friction_context; // what the law was asked with, besides pressure and slip
+  std::vector<FrictionState> friction_state_old; // at the last accepted state
   /// Nodal pressure on the slave surface at the local mesh nodes `nodes` (owned vertices): multipliers, or for penalty
   /// the projected pressure.
   std::vector<std::int32_t> nodes;
@@ -44,10 +48,11 @@ struct ContactSamples {
   }
 };
 
-/// A rigid master at a moment: the shape and where it has moved.
+/// A rigid master at a moment: the shape, where it has moved, and by how much since the last accepted state.
 struct MovedShape {
   RigidShape shape;
   std::array<double, 3> shift{};
+  std::array<double, 3> increment{};
 };
 
 /// One pair as the scene declares it.
@@ -55,6 +60,7 @@ struct ContactPairNames {
   std::string name;
   std::string slave;                            // surface of the mesh
   std::variant<std::string, MovedShape> master; // surface of the mesh, or a shape
+  std::optional<FrictionLaw> friction = std::nullopt;
 };
 
 } // namespace amontons

@@ -2,9 +2,16 @@
 // master and the increment of tangential motion since the last accepted state is
 //   Δg_t = P Δ(u_slave − u_master − rigid shift),  P = 1 − n ⊗ n,
 // convective and frame-indifferent to first order as the whole of small kinematics is. The shear traction follows from
-//   q = P λ_t + ε Δg_t,  σ_t = return_map(q, p = −σ_n),  virtual work ∫ σ_t · δg_t,
-// with the ε of the normal part. λ_t is the last accepted traction of the point (penalty), or Σ N_i λ_i with nodal
-// vectors held (Uzawa) or unknown (semismooth).
+//   q = P (σ_t,old + Δλ_t) + ε Δg_t,  σ_t = return_map(q, p = −σ_n),  virtual work ∫ σ_t · δg_t,
+// with the ε of the normal part, the traction σ_t,old of the point at the last accepted state, and Δλ_t the increment
+// of Σ N_i λ_i since then: of nodal vectors held (Uzawa) or unknown (semismooth); zero for penalty.
+//
+// Why increments of λ_t and not λ_t itself: λ_i is an average over the facets around node i, so λ_t differs from the
+// σ_t that it averages by about h² λ_t'' / 6. With q = P λ_t + ε Δg_t a point that sticks needs ε Δg_t = σ_t − λ_t to
+// carry its traction, in every increment anew, also where nothing changes: surfaces that stick would creep, the farther
+// the more increments are taken. With q as above Δλ_t = 0 and Δg_t = 0 solve an increment without load, and the
+// differences add up to h² λ_t'' / (6 ε), as those of the gap do. Both agree in the first increment, and summed over
+// increments the nodal equation below is the same.
 //
 // Nodal λ_i have dim Cartesian components: no tangent basis has to be chosen at nodes, where the surface has no normal,
 // or agreed upon between ranks. As for the normal part they are the lumped projection of the traction,
@@ -62,7 +69,12 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
       multipliers_(layout.dim(), std::vector<double>(nodes.nodes.size(), 0.0)), multipliers_old_(multipliers_) {
   const std::size_t n = points.points().size();
   history_.resize(n);
+  if (points.has_rigid_master())
+    for (auto& point : history_)
+      for (int c = 0; c < 3; ++c)
+        point.jump[c] = -points.rigid_shift()[c];
   factor_.assign(n, 1.0);
+  contexts_.resize(n);
   responses_.resize(n);
   jump_.resize(n);
   increment_.resize(n);
@@ -84,14 +96,17 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
 
 // --- state at a point ------------------------------------------------------------------------------------------------
 
-TangentVector TangentialPart::multiplier_at(const ContactPoint& point) const {
+/// Δλ_t, force per area.
+TangentVector TangentialPart::multiplier_increment(const ContactPoint& point) const {
   const auto nodes = points_.slave().facet(point.facet);
   const auto shape = points_.multiplier_shape(point);
-  TangentVector lambda{};
+  TangentVector increment{};
   for (std::size_t a = 0; a < shape.size(); ++a)
-    for (int c = 0; c < layout_.dim(); ++c)
-      lambda[c] += shape[a] * multipliers_[c][position_[nodes[a]]];
-  return lambda;
+    for (int c = 0; c < layout_.dim(); ++c) {
+      const auto at = position_[nodes[a]];
+      increment[c] += shape[a] * (multipliers_[c][at] - multipliers_old_[c][at]);
+    }
+  return increment;
 }
 
 void TangentialPart::fetch_multipliers(const State& state) {
@@ -129,6 +144,7 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
     const auto& point = points[i];
     const auto& old = history_[i];
     active_[i] = active[i];
+    contexts_[i] = {.dt = std::max(0.0, state.time - accepted_time_), .factor = factor_[i], .new_contact = old.open};
     jump_[i] = points_.displacement_jump(point, state);
     std::array<double, 3> moved{}, trial{};
     for (int c = 0; c < 3; ++c) {
@@ -142,14 +158,14 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
       continue;
     }
     increment_[i] = tangential(moved, point.normal);
-    const auto lambda = has_multipliers() ? multiplier_at(point) : old.traction;
-    const auto held = tangential(lambda, point.normal);
+    auto carried = multiplier_increment(point);
+    for (int c = 0; c < 3; ++c)
+      carried[c] += old.traction[c];
+    const auto held = tangential(carried, point.normal);
     for (int c = 0; c < 3; ++c)
       trial[c] = held[c] + point.epsilon * increment_[i][c];
-    const FrictionContext context{
-        .dt = std::max(0.0, state.time - accepted_time_), .factor = factor_[i], .new_contact = old.open};
     pressed_[i] = sigma[i] < 0.0;
-    responses_[i] = return_map(pair_.friction->law, context, trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
+    responses_[i] = return_map(pair_.friction->law, contexts_[i], trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
   }
 }
 
@@ -388,6 +404,8 @@ void TangentialPart::sample(ContactSamples& samples) const {
     samples.tau_c.push_back(responses_[i].tau_c);
     samples.slip.push_back(slip_vector(responses_[i]));
     samples.accumulated_slip.push_back(history_[i].slip + responses_[i].slip);
+    samples.friction_context.push_back(contexts_[i]);
+    samples.friction_state_old.push_back(history_[i].state);
   }
 }
 

@@ -78,7 +78,7 @@ class TangentialPart {
   };
   bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
   bool has_multipliers() const { return !std::holds_alternative<Penalty>(pair_.enforcement); }
-  TangentVector multiplier_at(const ContactPoint& point) const;
+  TangentVector multiplier_increment(const ContactPoint& point) const;
   void fetch_multipliers(const State& state);
   void find_factors(double time);
   void jump_variation(const ContactPoint& point, const ContactBlock& layout, std::span<double> motion) const;
@@ -97,6 +97,7 @@ class TangentialPart {
   double accepted_time_ = 0.0, factor_time_ = -1.0;
   std::vector<double> factor_;
   // At the last evaluation, per point:
+  std::vector<FrictionContext> contexts_;
   std::vector<FrictionResponse> responses_;
   std::vector<std::array<double, 3>> jump_; // u_slave − u_master − rigid shift
   std::vector<TangentVector> increment_;    // Δg_t

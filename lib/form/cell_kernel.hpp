@@ -6,19 +6,41 @@
 // unit radial displacement; d_a = ∇_a + h_a e_r the divergence, tr ε = Σ d_a · u_a. w is the weight times the volume
 // that the point stands for (with 2 π r in axisymmetric space).
 //
-// Mean dilatation (B-bar; Hughes, IJNME 15, 1980): with nearly incompressible material a cell of full integration
-// cannot keep tr ε = 0 at every point; of order 1 it locks, of order 2 it loses an order of accuracy. Only the part of
-// the dilatation in a small space of functions on the cell is kept: constants for order 1, all linear functions of x
-// for order 2 (the pair Q2/P1, which is stable). With an orthonormal basis ψ_k of that space, Σ w ψ_k ψ_l = δ_kl,
+// Near incompressibility a cell of full integration cannot keep tr ε = 0 at every point; of order 1 it locks, of order
+// 2 it loses an order of accuracy. `Dilatation` says what a cell does about it.
+//
+// Mean dilatation (B-bar; Hughes, IJNME 15, 1980): only the part of the dilatation in a small space of functions on the
+// cell is kept: constants for quadrilaterals and hexahedra of order 1, all linear functions of x for those of order 2
+// (the pair Q2/P1, which is stable). With an orthonormal basis ψ_k of that space, Σ w ψ_k ψ_l = δ_kl,
 //     ε̄ = ε + ⅓ (tr̄ - tr ε) 1,   tr̄ = Σ_k ψ_k Σ_a D_ka · u_a,   D_ka = Σ w ψ_k d_a,
 // so B̄_a = B_a + ⅓ 1 ⊗ (Σ_k ψ_k D_ka - d_a). The projection is volume-weighted, hence r-weighted in axisymmetric space.
 // In plane strain ε̄_zz need not vanish at a point, but its mean does. Constant strains are reproduced (patch test), and
-// the energy ½ ∫ σ(ε̄) : ε̄ gives symmetric forces. Plane stress needs none of this, as the thickness gives way;
-// simplices have no such pair that keeps their order: of order 1 they lock, of order 2 they lose one order near
-// incompressibility.
+// the energy ½ ∫ σ(ε̄) : ε̄ gives symmetric forces.
+//
+// Bubble (Crouzeix and Raviart, RAIRO 7 R3, 1973): triangles and tetrahedra of order 2 have linear dilatations anyway,
+// but too few displacements to go with them. One more function a cell, the vector bubble b β of math/bubble.hpp, makes
+// up for it. It is zero on the boundary, so β is found cell by cell and never an unknown of the system; here it is the
+// function after those of the nodes. The points feel the part of ∇b that is linear: their rule integrates it against
+// the nodes' strains exactly on straight sides, and it is all that the linear dilatation has of the bubble. (The rule
+// of axisymmetric space sees all of ∇b in a triangle.) What they do not see of its strain is left to a stiffness of its
+// own,
+//     Σ w (G' (|∇b'|² 1 + ⅓ ∇b' ⊗ ∇b')),   ∇b' ⊗ ∇b' from the table on the reference cell (`Cell::unseen`),
+// that of the deviator of ∇b' β with shear modulus G': it makes β unique, and as β is of third order in the cell size
+// no accuracy hangs on G'. On curved sides Σ w d_b = 0 is enforced, as the patch test asks for (Taylor, Beresford and
+// Wilson, IJNME 10, 1976). In axisymmetric space the hoop strains are not linear, so the linear mean dilatation is
+// taken besides.
+//
+// In the plane that is a stable pair with the full order. In space the bubble stabilizes the slopes of the pressure and
+// leaves its means to the edge nodes, which is enough but on regular meshes of cubes cut into six tetrahedra (Kuhn):
+// all faces at a diagonal of their squares lie in two planes, and two patterns of constant pressures find no
+// displacement against them. Nothing within a cell can cure that.
+//
+// Plane stress needs none of this, as the thickness gives way. Triangles and tetrahedra of order 1 have no cure within
+// the cell: they lock.
 #pragma once
 
 #include "material/law.hpp"
+#include "math/bubble.hpp"
 #include "math/reference_element.hpp"
 #include "math/space.hpp"
 #include "math/tensor.hpp"
@@ -31,11 +53,8 @@
 
 namespace amontons {
 
-/// How the cells of one type are integrated.
-struct CellRule {
-  const Tabulation* table;
-  bool mean_dilatation;
-};
+/// What keeps a cell from locking near incompressibility; see above.
+enum class Dilatation { Pointwise, ConstantMean, LinearMean, Bubble };
 
 /// Degree of the quadrature. Simplices of order k get 2 (k - 1), all that straight sides need; the products of
 /// quadrilaterals and hexahedra get k + 1 points a direction. Hoop strains, which are no polynomials, get more.
@@ -45,9 +64,16 @@ inline int cell_degree(ElementType type, Space space) {
   return simplex && space != Space::Axisymmetric ? std::max(1, 2 * (order - 1)) : 2 * order;
 }
 
+/// Shape functions, and the bubble of simplices, at the points of the cell quadrature.
+struct CellRule {
+  const Tabulation* table;
+  const BubbleTable* bubble; // null: the element has none
+};
+
 inline CellRule cell_rule(ElementType type, Space space) {
-  const bool simplex = num_vertices(type) == element_dim(type) + 1;
-  return {&tabulation(type, cell_degree(type, space)), !simplex && space != Space::PlaneStress};
+  const int degree = cell_degree(type, space);
+  const bool has_bubble = type == ElementType::Triangle6 || type == ElementType::Tetrahedron10;
+  return {&tabulation(type, degree), has_bubble ? &bubble_table(type, degree) : nullptr};
 }
 
 /// Inverse of a small matrix (adjugate over determinant); returns the determinant.
@@ -75,37 +101,46 @@ double invert(const double (&m)[dim][dim], double (&inverse)[dim][dim]) {
   }
 }
 
-template <int dim_, int nodes_, bool axisymmetric_>
+template <int dim_, int nodes_, bool axisymmetric_, Dilatation dilatation>
 struct CellKernel {
-  static constexpr int dim = dim_, nodes = nodes_, unknowns = dim * nodes, components = strain_size<dim>;
-  static constexpr bool axisymmetric = axisymmetric_;
+  static constexpr int dim = dim_, nodes = nodes_, components = strain_size<dim>;
+  static constexpr bool axisymmetric = axisymmetric_, has_bubble = dilatation == Dilatation::Bubble;
+  /// Shape functions: those of the nodes, then the bubble.
+  static constexpr int functions = nodes + (has_bubble ? 1 : 0), unknowns = dim * functions,
+                       node_unknowns = dim * nodes;
   /// Dimension of the space of dilatations; 0: not reduced.
-  static constexpr int modes = nodes == (1 << dim) ? 1 : (nodes == 9 || nodes == 27 ? dim + 1 : 0);
+  static constexpr int modes = dilatation == Dilatation::ConstantMean                                 ? 1
+                               : dilatation == Dilatation::LinearMean || (has_bubble && axisymmetric) ? dim + 1
+                                                                                                      : 0;
+  static constexpr bool mean_dilatation = modes > 0;
   static constexpr int max_points = nodes == 27 ? 27 : (nodes == 9 ? 9 : 8);
 
-  /// Component i of node a at [a * dim + i].
+  /// Component i of function a at [a * dim + i].
   using Nodal = std::array<double, unknowns>;
   using Block = std::array<double, std::size_t(unknowns) * unknowns>; // row-major
+  using NodeBlock = std::array<double, std::size_t(node_unknowns) * node_unknowns>;
+  using Bubble = std::array<double, has_bubble ? dim : 0>; // β and what goes with it
+  using BubbleBlock = std::array<Bubble, has_bubble ? dim : 0>;
 
   struct Point {
     double weight;
     Nodal gradient;
-    std::array<double, axisymmetric ? nodes : 0> hoop; // h_a
-    std::array<double, modes> mode;                    // ψ_k
+    std::array<double, axisymmetric ? functions : 0> hoop; // h_a
+    std::array<double, modes> mode;                        // ψ_k
 
     Nodal divergence() const {
       Nodal d = gradient;
       if constexpr (axisymmetric)
-        for (int a = 0; a < nodes; ++a)
+        for (int a = 0; a < functions; ++a)
           d[a * dim] += hoop[a];
       return d;
     }
   };
   struct Cell {
     int size;
-    bool mean_dilatation;
     std::array<Point, max_points> points;
     std::array<Nodal, modes> mean; // D_ka
+    BubbleBlock unseen;            // Σ w ∂_i b' ∂_j b'
   };
 
   /// Everything that depends on the place of the nodes. False when a point has no volume or, in axisymmetric space,
@@ -113,8 +148,8 @@ struct CellKernel {
   static bool geometry(const CellRule& rule, const Nodal& X, Cell& cell) {
     const Tabulation& table = *rule.table;
     cell.size = table.rule->size();
-    cell.mean_dilatation = modes > 0 && rule.mean_dilatation;
     bool sound = true;
+    if constexpr (has_bubble) cell.unseen = {};
     for (int q = 0; q < cell.size; ++q) {
       Point& point = cell.points[q];
       const double* const reference = table.gradient(q).data();
@@ -140,50 +175,53 @@ struct CellKernel {
         point.weight *= circumference(Space::Axisymmetric, r);
         sound = sound && r > 0;
       }
+      if constexpr (has_bubble) add_bubble(rule, q, X, inverse, cell);
     }
-    if constexpr (modes > 0)
-      if (cell.mean_dilatation && sound) project_dilatation(table, X, cell);
+    if constexpr (has_bubble) balance_bubble(cell);
+    if constexpr (mean_dilatation)
+      if (sound) project_dilatation(table, X, cell);
     return sound;
   }
 
-  /// ε̄ at all points of the cell.
-  static void strains(const Cell& cell, const Nodal& u, double* out) {
+  /// Adds ε̄ at all points of the cell that comes from the functions first ... last - 1.
+  template <int first, int last>
+  static void add_strains(const Cell& cell, const Nodal& u, double* strains) {
     std::array<double, modes> means{};
-    if (cell.mean_dilatation)
-      for (int k = 0; k < modes; ++k)
-        for (int i = 0; i < unknowns; ++i)
-          means[k] += cell.mean[k][i] * u[i];
+    for (int k = 0; k < modes; ++k)
+      for (int i = first * dim; i < last * dim; ++i)
+        means[k] += cell.mean[k][i] * u[i];
     for (int q = 0; q < cell.size; ++q) {
       const Point& point = cell.points[q];
       double H[dim][dim] = {};
-      for (int a = 0; a < nodes; ++a)
+      for (int a = first; a < last; ++a)
         for (int i = 0; i < dim; ++i)
           for (int j = 0; j < dim; ++j)
             H[i][j] += u[a * dim + i] * point.gradient[a * dim + j];
-      double* const strain = out + q * components;
-      strain[0] = H[0][0];
-      strain[1] = H[1][1];
-      strain[2] = 0;
-      strain[3] = H[0][1] + H[1][0];
-      if constexpr (dim == 3) {
-        strain[2] = H[2][2];
-        strain[4] = H[1][2] + H[2][1];
-        strain[5] = H[2][0] + H[0][2];
-      }
+      double normal[3] = {H[0][0], H[1][1], 0};
+      if constexpr (dim == 3) normal[2] = H[2][2];
       if constexpr (axisymmetric)
-        for (int a = 0; a < nodes; ++a)
-          strain[2] += u[a * dim] * point.hoop[a];
-      if (cell.mean_dilatation) {
-        double change = -(strain[0] + strain[1] + strain[2]);
+        for (int a = first; a < last; ++a)
+          normal[2] += u[a * dim] * point.hoop[a];
+      double change = 0;
+      if constexpr (mean_dilatation) {
+        change = -(normal[0] + normal[1] + normal[2]);
         for (int k = 0; k < modes; ++k)
           change += point.mode[k] * means[k];
-        for (int i = 0; i < 3; ++i)
-          strain[i] += change / 3;
+      }
+      double* const strain = strains + q * components;
+      for (int i = 0; i < 3; ++i)
+        strain[i] += normal[i] + change / 3;
+      strain[3] += H[0][1] + H[1][0];
+      if constexpr (dim == 3) {
+        strain[4] += H[1][2] + H[2][1];
+        strain[5] += H[2][0] + H[0][2];
       }
     }
   }
 
-  /// Σ w B̄_aᵀ σ. With mean dilatation the pressure part p = ⅓ tr σ leaves B_aᵀ σ and comes back through D_ka.
+  /// Σ w B̄_aᵀ σ for the functions a = first ... last - 1, at their places; zero for the others. With mean dilatation
+  /// the pressure part p = ⅓ tr σ leaves B_aᵀ σ and comes back through D_ka.
+  template <int first, int last>
   static Nodal forces(const Cell& cell, const double* stresses) {
     Nodal result{};
     std::array<double, modes> pressures{}; // Σ w ψ_k p
@@ -192,14 +230,14 @@ struct CellKernel {
       double s[components];
       for (int i = 0; i < components; ++i)
         s[i] = point.weight * stresses[q * components + i];
-      if (cell.mean_dilatation) {
+      if constexpr (mean_dilatation) {
         const double p = (s[0] + s[1] + s[2]) / 3;
         for (int i = 0; i < 3; ++i)
           s[i] -= p;
         for (int k = 0; k < modes; ++k)
           pressures[k] += point.mode[k] * p;
       }
-      for (int a = 0; a < nodes; ++a) {
+      for (int a = first; a < last; ++a) {
         const double* const g = &point.gradient[a * dim];
         double* const f = &result[a * dim];
         if constexpr (dim == 2) {
@@ -213,10 +251,9 @@ struct CellKernel {
         if constexpr (axisymmetric) f[0] += s[2] * point.hoop[a];
       }
     }
-    if (cell.mean_dilatation)
-      for (int k = 0; k < modes; ++k)
-        for (int i = 0; i < unknowns; ++i)
-          result[i] += pressures[k] * cell.mean[k][i];
+    for (int k = 0; k < modes; ++k)
+      for (int i = first * dim; i < last * dim; ++i)
+        result[i] += pressures[k] * cell.mean[k][i];
     return result;
   }
 
@@ -225,18 +262,17 @@ struct CellKernel {
   /// where H_ab = Σ w h_a h_b. Full integration: c = λ and no last term. Mean dilatation: the deviator keeps
   /// c = -⅔ G, and the bulk modulus K = λ + ⅔ G acts on the mean part.
   static void isotropic_stiffness(const Cell& cell, const Lame& lame, Block& K) {
-    const double G = lame.G, c = cell.mean_dilatation ? -2 * G / 3 : lame.lambda, bulk = lame.lambda + 2 * G / 3;
+    const double G = lame.G, c = mean_dilatation ? -2 * G / 3 : lame.lambda, bulk = lame.lambda + 2 * G / 3;
     Block S{};
     K.fill(0); // first c Σ w d ⊗ d + K Σ D ⊗ D
     for (int q = 0; q < cell.size; ++q) {
       add_upper(cell.points[q].weight, cell.points[q].gradient, S);
       if constexpr (axisymmetric) add_upper(c * cell.points[q].weight, cell.points[q].divergence(), K);
     }
-    if (cell.mean_dilatation)
-      for (int k = 0; k < modes; ++k)
-        add_upper(bulk, cell.mean[k], K);
-    for (int a = 0; a < nodes; ++a)
-      for (int b = a; b < nodes; ++b) {
+    for (int k = 0; k < modes; ++k)
+      add_upper(bulk, cell.mean[k], K);
+    for (int a = 0; a < functions; ++a)
+      for (int b = a; b < functions; ++b) {
         double trace = 0;
         for (int i = 0; i < dim; ++i)
           trace += S[at(a, i, b, i)];
@@ -272,6 +308,101 @@ struct CellKernel {
             K[row * unknowns + column] += B[i][row] * CB[column];
       }
     }
+  }
+
+  /// The bubble's own stiffness for constant isotropic moduli, K_bb of `isotropic_stiffness` with the share of G' =
+  /// `unseen_shear`.
+  static BubbleBlock bubble_stiffness(const Cell& cell, const Lame& lame, double unseen_shear) {
+    const double G = lame.G, c = mean_dilatation ? -2 * G / 3 : lame.lambda, bulk = lame.lambda + 2 * G / 3;
+    BubbleBlock K = unseen_stiffness(cell, unseen_shear);
+    for (int q = 0; q < cell.size; ++q) {
+      const Point& point = cell.points[q];
+      const double* const g = &point.gradient[node_unknowns];
+      double d[dim], square = 0;
+      for (int i = 0; i < dim; ++i) {
+        d[i] = g[i];
+        square += g[i] * g[i];
+      }
+      if constexpr (axisymmetric) {
+        d[0] += point.hoop[nodes];
+        K[0][0] += 2 * G * point.weight * point.hoop[nodes] * point.hoop[nodes];
+      }
+      for (int i = 0; i < dim; ++i) {
+        K[i][i] += point.weight * G * square;
+        for (int j = 0; j < dim; ++j)
+          K[i][j] += point.weight * (G * g[i] * g[j] + c * d[i] * d[j]);
+      }
+    }
+    for (int k = 0; k < modes; ++k)
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          K[i][j] += bulk * cell.mean[k][node_unknowns + i] * cell.mean[k][node_unknowns + j];
+    return K;
+  }
+
+  /// The same for any moduli.
+  static BubbleBlock bubble_stiffness(const Cell& cell, const double* moduli, double unseen_shear) {
+    BubbleBlock K = unseen_stiffness(cell, unseen_shear);
+    for (int q = 0; q < cell.size; ++q) {
+      const StrainOperator B = strain_operator(cell, cell.points[q]);
+      const double* const C = moduli + q * components * components;
+      for (int row = 0; row < components; ++row)
+        for (int column = 0; column < components; ++column)
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j)
+              K[i][j] += cell.points[q].weight * C[row * components + column] * B[row][node_unknowns + i] *
+                         B[column][node_unknowns + j];
+    }
+    return K;
+  }
+
+  /// The stiffness of what the points do not see of the bubble.
+  static BubbleBlock unseen_stiffness(const Cell& cell, double unseen_shear) {
+    BubbleBlock K{};
+    double trace = 0;
+    for (int i = 0; i < dim; ++i)
+      trace += cell.unseen[i][i];
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        K[i][j] = unseen_shear * (cell.unseen[i][j] / 3 + (i == j ? trace : 0));
+    return K;
+  }
+
+  /// -K⁻¹ `force`, from and to the bubble's places.
+  static Nodal solve(const BubbleBlock& K, const Nodal& force) {
+    double matrix[dim][dim], inverse[dim][dim];
+    for (int i = 0; i < dim; ++i)
+      std::copy(K[i].begin(), K[i].end(), matrix[i]);
+    invert<dim>(matrix, inverse);
+    Nodal result{};
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        result[node_unknowns + i] -= inverse[i][j] * force[node_unknowns + j];
+    return result;
+  }
+
+  /// The stiffness of the nodes when the bubble gives way: K_uu - K_ub K_bb⁻¹ K_bu.
+  static NodeBlock condensed(const Block& K, const Cell& cell, double unseen_shear) {
+    const BubbleBlock unseen = unseen_stiffness(cell, unseen_shear);
+    double own[dim][dim], inverse[dim][dim];
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        own[i][j] = unseen[i][j] + K[at(nodes, i, nodes, j)];
+    invert<dim>(own, inverse);
+    NodeBlock result;
+    for (int row = 0; row < node_unknowns; ++row) {
+      double factors[dim] = {}; // of this row of K_ub K_bb⁻¹
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          factors[j] += K[row * unknowns + node_unknowns + i] * inverse[i][j];
+      for (int column = 0; column < node_unknowns; ++column) {
+        double entry = K[row * unknowns + column];
+        for (int j = 0; j < dim; ++j)
+          entry -= factors[j] * K[(node_unknowns + j) * unknowns + column];
+        result[row * node_unknowns + column] = entry;
+      }
+    }
+    return result;
   }
 
  private:
@@ -335,7 +466,7 @@ struct CellKernel {
 
   static StrainOperator strain_operator(const Cell& cell, const Point& point) {
     StrainOperator B{};
-    for (int a = 0; a < nodes; ++a) {
+    for (int a = 0; a < functions; ++a) {
       const int x = a * dim, y = x + 1, z = x + 2;
       const double* const g = &point.gradient[x];
       for (int i = 0; i < dim; ++i)
@@ -350,45 +481,89 @@ struct CellKernel {
       }
       if constexpr (axisymmetric) B[2][x] = point.hoop[a];
     }
-    if (!cell.mean_dilatation) return B;
-    const Nodal d = point.divergence();
-    for (int column = 0; column < unknowns; ++column) {
-      double change = -d[column];
-      for (int k = 0; k < modes; ++k)
-        change += point.mode[k] * cell.mean[k][column];
-      for (int i = 0; i < 3; ++i)
-        B[i][column] += change / 3;
+    if constexpr (mean_dilatation) {
+      const Nodal d = point.divergence();
+      for (int column = 0; column < unknowns; ++column) {
+        double change = -d[column];
+        for (int k = 0; k < modes; ++k)
+          change += point.mode[k] * cell.mean[k][column];
+        for (int i = 0; i < 3; ++i)
+          B[i][column] += change / 3;
+      }
     }
     return B;
+  }
+
+  /// The bubble at point q, `inverse` being ∂ξ_i/∂x_j there.
+  static void add_bubble(const CellRule& rule, int q, const Nodal& X, const double (&inverse)[dim][dim], Cell& cell) {
+    const BubbleTable& bubble = *rule.bubble;
+    Point& point = cell.points[q];
+    for (int i = 0; i < dim; ++i) {
+      point.gradient[node_unknowns + i] = 0;
+      for (int j = 0; j < dim; ++j)
+        point.gradient[node_unknowns + i] += inverse[j][i] * bubble.gradient(q)[j];
+    }
+    if constexpr (axisymmetric) point.hoop[nodes] = bubble.values[q] / place(*rule.table, q, X, 0);
+    for (int i = 0; i < dim; ++i)
+      for (int l = 0; l < dim; ++l) {
+        double half = 0; // Σ_k ∂ξ_k/∂x_i unseen_kl
+        for (int k = 0; k < dim; ++k)
+          half += inverse[k][i] * bubble.unseen[k * dim + l];
+        for (int j = 0; j < dim; ++j)
+          cell.unseen[i][j] += point.weight * half * inverse[l][j];
+      }
+  }
+
+  /// Takes a constant off the bubble's gradient, so that Σ w d_b = 0. On straight sides it is zero.
+  static void balance_bubble(Cell& cell) {
+    Bubble mean{};
+    double volume = 0;
+    for (int q = 0; q < cell.size; ++q) {
+      const Point& point = cell.points[q];
+      volume += point.weight;
+      for (int i = 0; i < dim; ++i)
+        mean[i] += point.weight * point.gradient[node_unknowns + i];
+      if constexpr (axisymmetric) mean[0] += point.weight * point.hoop[nodes];
+    }
+    for (int q = 0; q < cell.size; ++q)
+      for (int i = 0; i < dim; ++i)
+        cell.points[q].gradient[node_unknowns + i] -= mean[i] / volume;
   }
 };
 
 /// Calls work(kernel) with the kernel of this element in this space: the one place that lists them all.
 template <class Work>
 void with_kernel(ElementType type, Space space, Work&& work) {
-  const auto plane = [&]<int nodes>(std::integral_constant<int, nodes>) {
+  const auto plane = [&]<int nodes, Dilatation dilatation>(std::integral_constant<int, nodes>,
+                                                           std::integral_constant<Dilatation, dilatation>) {
     if (space == Space::Axisymmetric)
-      work(CellKernel<2, nodes, true>{});
+      work(CellKernel<2, nodes, true, dilatation>{});
+    else if (space == Space::PlaneStrain)
+      work(CellKernel<2, nodes, false, dilatation>{});
     else
-      work(CellKernel<2, nodes, false>{});
+      work(CellKernel<2, nodes, false, Dilatation::Pointwise>{});
   };
+  constexpr std::integral_constant<Dilatation, Dilatation::Pointwise> pointwise;
+  constexpr std::integral_constant<Dilatation, Dilatation::ConstantMean> constant;
+  constexpr std::integral_constant<Dilatation, Dilatation::LinearMean> linear;
+  constexpr std::integral_constant<Dilatation, Dilatation::Bubble> bubble;
   switch (type) {
   case ElementType::Triangle3:
-    return plane(std::integral_constant<int, 3>{});
+    return plane(std::integral_constant<int, 3>{}, pointwise);
   case ElementType::Triangle6:
-    return plane(std::integral_constant<int, 6>{});
+    return plane(std::integral_constant<int, 6>{}, bubble);
   case ElementType::Quadrilateral4:
-    return plane(std::integral_constant<int, 4>{});
+    return plane(std::integral_constant<int, 4>{}, constant);
   case ElementType::Quadrilateral9:
-    return plane(std::integral_constant<int, 9>{});
+    return plane(std::integral_constant<int, 9>{}, linear);
   case ElementType::Tetrahedron4:
-    return work(CellKernel<3, 4, false>{});
+    return work(CellKernel<3, 4, false, pointwise>{});
   case ElementType::Tetrahedron10:
-    return work(CellKernel<3, 10, false>{});
+    return work(CellKernel<3, 10, false, bubble>{});
   case ElementType::Hexahedron8:
-    return work(CellKernel<3, 8, false>{});
+    return work(CellKernel<3, 8, false, constant>{});
   case ElementType::Hexahedron27:
-    return work(CellKernel<3, 27, false>{});
+    return work(CellKernel<3, 27, false, linear>{});
   default:
     return; // segments are no cells
   }

@@ -1,6 +1,7 @@
 #include "form/loads.hpp"
 
 #include "base/error.hpp"
+#include "math/bubble.hpp"
 #include "math/reference_element.hpp"
 
 #include <Eigen/Dense>
@@ -73,18 +74,29 @@ void add_surface_load(const Mesh& mesh, Space space, const SurfaceLoad& load, do
   }
 }
 
+/// Calls work(c, q, force) for each cell and quadrature point of the block, `force` the load times the volume that the
+/// point stands for.
+template <class Work>
+void each_body_force(const Mesh& mesh, Space space, const CellBlock& block, const BodyLoad& load, double time,
+                     Work&& work) {
+  if (mesh.bodies[block.body] != load.body) return;
+  const Tabulation& table = tabulation(block.type, load_degree(block.type));
+  for (std::int32_t c = 0; c < block.size(); ++c)
+    for (int q = 0; q < table.rule->size(); ++q) {
+      Placed placed = place(mesh, table, q, block.cell(c));
+      if (mesh.dim == 2) placed.tangents(2, 2) = 1; // unit thickness
+      const std::span<const double> x(placed.x.data(), mesh.dim);
+      const double volume = table.rule->weights[q] * placed.tangents.determinant() * circumference(space, x[0]);
+      work(c, q, Vector3(volume * evaluate(load.force, time, x)));
+    }
+}
+
 void add_body_load(const Mesh& mesh, Space space, const BodyLoad& load, double time, std::span<double> forces) {
   for (const auto& block : mesh.blocks) {
-    if (mesh.bodies[block.body] != load.body) continue;
     const Tabulation& table = tabulation(block.type, load_degree(block.type));
-    for (std::int32_t c = 0; c < block.size(); ++c)
-      for (int q = 0; q < table.rule->size(); ++q) {
-        Placed placed = place(mesh, table, q, block.cell(c));
-        if (mesh.dim == 2) placed.tangents(2, 2) = 1; // unit thickness
-        const std::span<const double> x(placed.x.data(), mesh.dim);
-        const double volume = table.rule->weights[q] * placed.tangents.determinant() * circumference(space, x[0]);
-        spread(block.cell(c), table.value(q), volume * evaluate(load.force, time, x), mesh.dim, forces);
-      }
+    each_body_force(mesh, space, block, load, time, [&](std::int32_t c, int q, const Vector3& force) {
+      spread(block.cell(c), table.value(q), force, mesh.dim, forces);
+    });
   }
 }
 
@@ -95,6 +107,18 @@ std::string unknown_name(const std::string& what, const std::string& name, const
 }
 
 } // namespace
+
+std::vector<double> bubble_forces(const Mesh& mesh, Space space, const CellBlock& block,
+                                  std::span<const BodyLoad> loads, double time) {
+  std::vector<double> result(std::size_t(block.size()) * mesh.dim);
+  const Quadrature& rule = quadrature(block.type, load_degree(block.type));
+  for (const auto& load : loads)
+    each_body_force(mesh, space, block, load, time, [&](std::int32_t c, int q, const Vector3& force) {
+      for (int i = 0; i < mesh.dim; ++i)
+        result[std::size_t(c) * mesh.dim + i] += bubble_value(block.type, rule.point(q)) * force[i];
+    });
+  return result;
+}
 
 LoadForm::LoadForm(const DofLayout& layout, Space space, std::vector<SurfaceLoad> surface, std::vector<BodyLoad> body,
                    std::vector<ResultantLoad> resultants)

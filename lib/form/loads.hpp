@@ -26,6 +26,11 @@ struct BodyLoad {
   std::array<std::optional<Expression>, 3> force;
 };
 
+/// ∫ b f of the body loads over each cell of a block of triangles or tetrahedra, with the cell bubble b of
+/// math/bubble.hpp: mesh.dim numbers a cell; in axisymmetric space over the whole circumference.
+std::vector<double> bubble_forces(const Mesh& mesh, Space space, const CellBlock& block,
+                                  std::span<const BodyLoad> loads, double time);
+
 /// Total force on tied group number `tied` of the layout, in its direction; in axisymmetric space over the whole
 /// circumference.
 struct ResultantLoad {

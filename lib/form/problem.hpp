@@ -38,9 +38,13 @@ class Problem {
   void commit(Vec unknowns);
   void roll_back();
   double time() const { return time_; }
+  /// Time of the last accepted state.
+  double accepted_time() const { return accepted_time_; }
 
   /// The state at `unknowns` (valid until the next call of any member). Collective.
   State state_at(Vec unknowns);
+  /// Is the next tangent the first of its increment? Forms then guess, and it need not be the residual's derivative.
+  bool is_first_guess() const { return first_guess_; }
 
   /// Out-of-balance forces; zero in the equations of prescribed displacements. Collective.
   void residual(Vec unknowns, Vec result);

@@ -13,6 +13,8 @@ namespace {
 constexpr int largest = 9; // nodes of a surface facet
 /// Relative size below which a length or an area counts as zero.
 constexpr double degenerate = 1e-14;
+/// Distance relative to the facet's size within which a node lies where the linear facet has it.
+constexpr double straight_tolerance = 1e-12;
 /// Distance in reference coordinates within which a point lies on an edge or a vertex.
 constexpr double on_border = 1e-12;
 
@@ -121,6 +123,26 @@ Curve<2> segment_curve(ElementType type, std::span<const double> nodes) {
   if (type == ElementType::Segment2) return curve_through<2>(node(0), node(1), nullptr);
   const Point<2> middle = node(2);
   return curve_through<2>(node(0), node(1), &middle);
+}
+
+bool is_straight(ElementType type, std::span<const double> nodes) {
+  if (element_order(type) == 1) return true;
+  const auto linear = linear_element(type);
+  const auto reference = reference_nodes(type);
+  const std::size_t d = element_dim(type), dim = d + 1;
+  const int corners = num_vertices(type);
+  const double allowed = straight_tolerance * facet_size(type, nodes);
+  std::array<double, 4> shape{};
+  for (std::size_t a = corners; a < std::size_t(num_nodes(type)); ++a) {
+    shape_values(linear, reference.subspan(a * d, d), std::span(shape).first(corners));
+    for (std::size_t c = 0; c < dim; ++c) {
+      double apart = -nodes[a * dim + c];
+      for (int b = 0; b < corners; ++b)
+        apart += shape[b] * nodes[std::size_t(b) * dim + c];
+      if (std::abs(apart) > allowed) return false;
+    }
+  }
+  return true;
 }
 
 Projection landed(ElementType type, std::span<const double> nodes, std::span<const double> x, const Xi& xi) {

@@ -62,6 +62,9 @@ Curve<dim> curve_through(const Point<dim>& first, const Point<dim>& last, const 
 /// Segment facet of a 2D body.
 Curve<2> segment_curve(ElementType type, std::span<const double> nodes);
 
+/// Is a facet of order 2 the linear facet of its corners, node by node to rounding? Those of order 1 are.
+bool is_straight(ElementType type, std::span<const double> nodes);
+
 /// The projection of x that landed on ξ, with all its fields; not found where the facet has no normal.
 Projection landed(ElementType type, std::span<const double> nodes, std::span<const double> x, const Xi& xi);
 

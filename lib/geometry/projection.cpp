@@ -274,6 +274,10 @@ double facet_normal(ElementType type, std::span<const double> nodes, std::span<c
 }
 
 Projection closest_point(ElementType type, std::span<const double> nodes, std::span<const double> x) {
+  if (element_order(type) == 2 && facet::is_straight(type, nodes)) {
+    const auto linear = linear_element(type); // the same ξ at the same place, in a tenth of the time
+    return closest_point(linear, nodes.first(std::size_t(num_nodes(linear)) * (element_dim(type) + 1)), x);
+  }
   if (element_dim(type) == 1) {
     const double s = closest_on_curve<2>(facet::segment_curve(type, nodes), Point<2>(x[0], x[1]));
     return facet::landed(type, nodes, x, Xi(s, 0.0));

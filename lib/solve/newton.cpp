@@ -39,6 +39,15 @@ std::string in_words(SNESConvergedReason reason, double relative) {
   }
 }
 
+/// The line search if it is one that backtracks, else null.
+SNESLineSearch backtracking(SNES snes) {
+  SNESLineSearch search = nullptr;
+  PetscBool is_backtracking = PETSC_FALSE;
+  AMT_PETSC(SNESGetLineSearch(snes, &search));
+  AMT_PETSC(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(search), SNESLINESEARCHBT, &is_backtracking));
+  return is_backtracking ? search : nullptr;
+}
+
 } // namespace
 
 void default_option(const std::string& name, const std::string& value) {
@@ -73,21 +82,9 @@ std::string choose_linear_solver(const Problem& problem) {
   return symmetric ? "MUMPS, symmetric factorization" : "MUMPS, unsymmetric factorization";
 }
 
-Newton::Newton(Problem& problem, std::function<bool()> interrupted)
-    : problem_(problem), interrupted_(std::move(interrupted)), matrix_(problem.new_matrix()),
-      residual_(problem.layout().new_vector()) {
-  AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
-  AMT_PETSC(SNESSetFunction(snes_, residual_, evaluate_residual, this));
-  AMT_PETSC(SNESSetJacobian(snes_, matrix_, matrix_, evaluate_tangent, this));
-  AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
-  AMT_PETSC(SNESSetFromOptions(snes_));
-  if (problem.layout().num_extra() == 0) set_near_null_space();
-}
-
-/// Rigid-body modes, which multigrid needs to coarsen elasticity well.
-void Newton::set_near_null_space() {
-  const auto& mesh = problem_.layout().mesh();
-  VecHandle places = problem_.layout().new_vector();
+NullSpaceHandle rigid_body_modes(const DofLayout& layout) {
+  const auto& mesh = layout.mesh();
+  VecHandle places = layout.new_vector();
   {
     VecArray values(places);
     for (std::int32_t node = 0; node < mesh.num_owned; ++node)
@@ -96,7 +93,57 @@ void Newton::set_near_null_space() {
   }
   NullSpaceHandle modes;
   AMT_PETSC(MatNullSpaceCreateRigidBody(places, modes.put()));
-  AMT_PETSC(MatSetNearNullSpace(matrix_, modes));
+  return modes;
+}
+
+SNESConvergedReason judge_residual(SNES snes, const Problem& problem, PetscInt iteration, double norm) {
+  PetscReal rtol = 0.0;
+  PetscInt max_iterations = 0;
+  AMT_PETSC(SNESGetTolerances(snes, nullptr, &rtol, nullptr, &max_iterations, nullptr));
+  if (!std::isfinite(norm)) return SNES_DIVERGED_FNORM_NAN;
+  if (norm <= std::max(rtol * problem.force_scale(), problem.rounding())) return SNES_CONVERGED_FNORM_RELATIVE;
+  return iteration >= max_iterations ? SNES_DIVERGED_MAX_IT : SNES_CONVERGED_ITERATING;
+}
+
+SolveOutcome outcome_of(SNES snes, const Problem& problem) {
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscInt newton = 0, linear = 0;
+  double norm = 0.0;
+  AMT_PETSC(SNESGetConvergedReason(snes, &reason));
+  AMT_PETSC(SNESGetIterationNumber(snes, &newton));
+  AMT_PETSC(SNESGetLinearSolveIterations(snes, &linear));
+  AMT_PETSC(SNESGetFunctionNorm(snes, &norm));
+  SolveOutcome outcome;
+  outcome.converged = reason > 0 && reason != SNES_BREAKOUT_INNER_ITER;
+  outcome.newton = static_cast<int>(newton);
+  outcome.linear = static_cast<int>(linear);
+  const double scale = problem.force_scale();
+  outcome.residual = scale > 0.0 ? norm / scale : 0.0;
+  outcome.reason = outcome.converged ? "converged" : in_words(reason, outcome.residual);
+  return outcome;
+}
+
+Newton::Newton(Problem& problem, std::function<bool()> interrupted)
+    : problem_(problem), interrupted_(std::move(interrupted)), matrix_(problem.new_matrix()),
+      residual_(problem.layout().new_vector()) {
+  AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
+  AMT_PETSC(SNESSetFunction(snes_, residual_, evaluate_residual, this));
+  AMT_PETSC(SNESSetJacobian(snes_, matrix_, matrix_, evaluate_tangent, this));
+  AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
+  // When a line search gives up, PETSc (3.18) compares the last step that it noted, which may be the short last one of
+  // an earlier solve, with stol |u|, and takes any residual for converged.
+  AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
+  AMT_PETSC(SNESSetFromOptions(snes_));
+  if (const auto search = backtracking(snes_)) AMT_PETSC(SNESLineSearchBTGetAlpha(search, &sufficient_decrease_));
+  if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
+}
+
+/// Backtracking goes back until |F|² has fallen by alpha of what the tangent promises. A tangent that is no derivative
+/// promises nothing: with a large negative alpha its full step passes.
+void Newton::ask_for_decrease(bool is_asked) {
+  constexpr PetscReal accept_anything = -1e30;
+  if (const auto search = backtracking(snes_))
+    AMT_PETSC(SNESLineSearchBTSetAlpha(search, is_asked ? sufficient_decrease_ : accept_anything));
 }
 
 PetscErrorCode Newton::evaluate_residual(SNES, Vec unknowns, Vec result, void* self) {
@@ -107,30 +154,20 @@ PetscErrorCode Newton::evaluate_residual(SNES, Vec unknowns, Vec result, void* s
 PetscErrorCode Newton::evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, void* self) {
   auto& newton = *static_cast<Newton*>(self);
   return guarded(newton.kept_, [&] {
+    newton.ask_for_decrease(!newton.problem_.is_first_guess());
     if (newton.problem_.tangent(unknowns, matrix)) ++newton.factorizations_;
   });
 }
 
-/// Converged when the out-of-balance force is small (snes_rtol) against the forces that are balanced, which, unlike the
-/// first residual of an increment, do not become small when the guess is good.
 PetscErrorCode Newton::test_convergence(SNES snes, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                         SNESConvergedReason* reason, void* self) {
   auto& newton = *static_cast<Newton*>(self);
   return guarded(newton.kept_, [&] {
-    PetscReal atol = 0.0, rtol = 0.0;
-    PetscInt max_iterations = 0;
-    AMT_PETSC(SNESGetTolerances(snes, &atol, &rtol, nullptr, &max_iterations, nullptr));
-    *reason = SNES_CONVERGED_ITERATING;
+    *reason = judge_residual(snes, newton.problem_, iteration, norm);
     if (newton.interrupted_ && newton.interrupted_())
       *reason = SNES_BREAKOUT_INNER_ITER;
-    else if (!std::isfinite(norm))
-      *reason = SNES_DIVERGED_FNORM_NAN;
-    else if (iteration < newton.least_iterations_
-                 ? norm <= 1e-15 * newton.problem_.force_scale()
-                 : norm <= std::max(rtol * newton.problem_.force_scale(), newton.problem_.rounding()))
-      *reason = SNES_CONVERGED_FNORM_RELATIVE;
-    else if (iteration >= max_iterations)
-      *reason = SNES_DIVERGED_MAX_IT;
+    else if (*reason > 0 && iteration < newton.least_iterations_ && norm > 1e-15 * newton.problem_.force_scale())
+      *reason = SNES_CONVERGED_ITERATING;
   });
 }
 
@@ -141,21 +178,8 @@ SolveOutcome Newton::solve(Vec unknowns) {
   const PetscErrorCode code = SNESSolve(snes_, nullptr, unknowns);
   if (kept_) std::rethrow_exception(kept_);
   AMT_PETSC(code);
-  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
-  PetscInt newton = 0, linear = 0;
-  double norm = 0.0;
-  AMT_PETSC(SNESGetConvergedReason(snes_, &reason));
-  AMT_PETSC(SNESGetIterationNumber(snes_, &newton));
-  AMT_PETSC(SNESGetLinearSolveIterations(snes_, &linear));
-  AMT_PETSC(SNESGetFunctionNorm(snes_, &norm));
-  SolveOutcome outcome;
-  outcome.converged = reason > 0 && reason != SNES_BREAKOUT_INNER_ITER;
-  outcome.newton = static_cast<int>(newton);
-  outcome.linear = static_cast<int>(linear);
+  SolveOutcome outcome = outcome_of(snes_, problem_);
   outcome.factorizations = factorizations_;
-  const double scale = problem_.force_scale();
-  outcome.residual = scale > 0.0 ? norm / scale : 0.0;
-  outcome.reason = outcome.converged ? "converged" : in_words(reason, outcome.residual);
   return outcome;
 }
 

@@ -29,6 +29,16 @@ void default_option(const std::string& name, const std::string& value);
 /// multigrid. Returns in words what was chosen.
 std::string choose_linear_solver(const Problem& problem);
 
+/// Rigid-body modes, which multigrid needs to coarsen elasticity well. Collective.
+NullSpaceHandle rigid_body_modes(const DofLayout& layout);
+
+/// Whether to go on at a residual of this norm: converged when it is small (snes_rtol) against the forces that are
+/// balanced, which, unlike the first residual of an increment, do not become small when the guess is good.
+SNESConvergedReason judge_residual(SNES snes, const Problem& problem, PetscInt iteration, double norm);
+
+/// How a finished SNES went, without outer iterations and factorizations.
+SolveOutcome outcome_of(SNES snes, const Problem& problem);
+
 class Newton {
  public:
   /// Call choose_linear_solver first. `interrupted` is asked at every iteration and must be the same on every rank.
@@ -47,7 +57,7 @@ class Newton {
   static PetscErrorCode evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, void* self);
   static PetscErrorCode test_convergence(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                          SNESConvergedReason* reason, void* self);
-  void set_near_null_space();
+  void ask_for_decrease(bool is_asked);
 
   Problem& problem_;
   std::function<bool()> interrupted_;
@@ -56,6 +66,7 @@ class Newton {
   VecHandle residual_;
   std::exception_ptr kept_;
   int factorizations_ = 0, least_iterations_ = 0;
+  PetscReal sufficient_decrease_ = 0.0; // of a backtracking line search
 };
 
 } // namespace amontons

@@ -8,13 +8,24 @@ import sys
 import tempfile
 from pathlib import Path
 
+import block_cases
 import friction_cases
 import hertz_cases
 import other_cases
 import patch_cases
+import vi_cases
 from harness import Bench
 
-CASES = {**patch_cases.CASES, **hertz_cases.CASES, **other_cases.CASES, **friction_cases.CASES}
+CASES = {
+    **patch_cases.CASES,
+    **hertz_cases.CASES,
+    **other_cases.CASES,
+    **friction_cases.CASES,
+    **block_cases.CASES,
+    **vi_cases.CASES,
+}
+for scene, case in vi_cases.VI.items():
+    CASES[scene]["vi"] = case
 
 
 def main():

@@ -45,9 +45,9 @@ def set_key(deck, path, value):
 
 
 class Results:
-    """A finished run: `deck`, `summary`, `history` (column -> array) and the fields of the last step."""
+    """A finished run: `deck`, `summary`, `history` (column -> array) and the fields of one step, the last or that at `time`."""
 
-    def __init__(self, deck, folder):
+    def __init__(self, deck, folder, time=None):
         self.deck, self.folder = deck, Path(folder)
         self.summary = json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
         with open(self.folder / "history.csv", encoding="utf-8", newline="") as file:
@@ -55,7 +55,9 @@ class Results:
         self.history = {name: np.array([float(row[i]) for row in rows[1:]]) for i, name in enumerate(rows[0])}
         with h5py.File(self.folder / "fields.h5", "r") as file:
             run = file["run0"]
-            step = run[max(name for name in run if name.startswith("step_"))]
+            steps = {float(run[name].attrs["time"]): run[name] for name in run if name.startswith("step_")}
+            step = steps[max(steps) if time is None else min(steps, key=lambda other: abs(other - time))]
+            self.time = float(step.attrs["time"])
             self.bodies = text_of(run.attrs["bodies"]).split("\n")
             self.tensor = text_of(step.attrs["tensor_components"]).split()
             self.places = run["mesh/coordinates"][:]
@@ -77,6 +79,13 @@ class Results:
             result[topology[at + 1 : at + 1 + count]] = body
             at += 1 + count
         return result
+
+    def at(self, time):
+        """The same run with the fields of the step at `time`."""
+        results = Results(self.deck, self.folder, time)
+        if abs(results.time - time) > 1e-9 * max(1.0, abs(time)):
+            raise SystemExit(f"{self.folder} has no fields at t = {time}; the nearest are at {results.time}")
+        return results
 
     def stress(self, component):
         """Nodal stress, component by name: "xx", "xy" ..."""

@@ -8,6 +8,7 @@ FORMULATIONS = {
     "semismooth": {"semismooth": {}},
     "uzawa": {"uzawa": {}},
     "penalty": {"penalty": {"alpha": 1e5}},
+    "vi": {"vi": {}},
 }
 
 
@@ -24,6 +25,16 @@ def elements(shape, orders=(1, 2)):
                     "mesh.parameters.n_lower": 3 if structured else 5,
                     "mesh.order": order,
                 }
+
+
+def check_exact(bench, label, results, up):
+    """Stress and multipliers to rounding."""
+    normal = "xyz"[up] * 2
+    others = [name for name in results.tensor if name != normal and not (up == 1 and name == "zz")]
+    wrong = max(np.abs(results.stress(normal) + 1.0).max(), *(np.abs(results.stress(name)).max() for name in others))
+    bench.below(f"{label}: largest error of the stress", wrong, 1e-10)
+    pressure = results.surface["interface"]["pressure"]
+    bench.below(f"{label}: largest error of the multipliers", np.abs(pressure - 1.0).max(), 1e-10)
 
 
 def check_uniform(bench, label, results, up):
@@ -58,6 +69,10 @@ def formulations_2d(bench):
     run_elements(bench, "patch_2d", "quads", 1, ["uzawa", "penalty"])
 
 
+def vi_2d(bench):
+    run_elements(bench, "patch_2d", "quads", 1, ["vi"])
+
+
 def projection_2d(bench):
     """Projection along the slave's normal."""
     for label, changes in elements("quads"):
@@ -73,7 +88,45 @@ def formulations_3d(bench):
     run_elements(bench, "patch_3d", "hexes", 2, ["uzawa", "penalty"])
 
 
+def run_segments(bench, scene, shape, up, formulations):
+    """Integration on segments, with the finer side as slave and with the coarser one."""
+    for label, changes in elements(shape):
+        # Shape functions on a quadrilateral that is no parallelogram are not polynomials in place: no rule is exact for
+        # them, one of order 16 is to 1e-11.
+        skewed = changes["mesh.parameters.structured"] == 0 and shape == "hexes" and changes["mesh.parameters.hexes"] == 1
+        for name in formulations:
+            for side, (slave, master) in {
+                "fine": ("upper_bottom", "lower_top"),
+                "coarse": ("lower_top", "upper_bottom"),
+            }.items():
+                formulation = {"uzawa": {"tolerance": 1e-13}} if name == "uzawa" else FORMULATIONS[name]
+                results = bench.run(
+                    scene,
+                    {
+                        **changes,
+                        "contact.0.slave": slave,
+                        "contact.0.master": master,
+                        "contact.0.enforce": formulation,
+                        "contact.0.integration": {"segment": {"order": 16 if skewed else 4}},
+                        "petsc": {"snes_rtol": 1e-13},
+                    },
+                )
+                check_exact(bench, f"{label}, {name}, {side} slave", results, up)
+
+
+def segments_2d(bench):
+    run_segments(bench, "patch_2d", "quads", 1, ["semismooth", "uzawa"])
+
+
+def segments_3d(bench):
+    run_segments(bench, "patch_3d", "hexes", 2, ["semismooth"])
+
+
+def segments_uzawa_3d(bench):
+    run_segments(bench, "patch_3d", "hexes", 2, ["uzawa"])
+
+
 CASES = {
-    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "projection": projection_2d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_2d")},
-    "patch_3d": {"elements": elements_3d, "formulations": formulations_3d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_3d")},
+    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "vi": vi_2d, "projection": projection_2d, "segments": segments_2d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_2d")},
+    "patch_3d": {"elements": elements_3d, "formulations": formulations_3d, "segments": segments_3d, "segments_uzawa": segments_uzawa_3d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_3d")},
 }

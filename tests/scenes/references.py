@@ -27,10 +27,43 @@ def cattaneo_mindlin(x, a, limit, ratio):
     return c, limit * (ellipse(a) - c / a * ellipse(c))
 
 
+def best_linear(nodes, function, points=20):
+    """Values at `nodes` (ascending) of the continuous function, linear between them, that is nearest to `function` in L2,
+    and its distance, an integral over all nodes' span."""
+    place, weight = np.polynomial.legendre.leggauss(points)
+    half = 0.5 * np.diff(nodes)
+    at = (0.5 * (nodes[1:] + nodes[:-1]) + half * place[:, None]).T
+    weights, values = half[:, None] * weight, function(at)
+    shape = np.array([1.0 - place, 1.0 + place]) / 2.0
+    matrix, right = np.zeros((len(nodes), len(nodes))), np.zeros(len(nodes))
+    first = np.arange(len(half))
+    for i in range(2):
+        np.add.at(right, first + i, np.sum(weights * shape[i] * values, axis=1))
+        for j in range(2):
+            np.add.at(matrix, (first + i, first + j), np.sum(weights * shape[i] * shape[j], axis=1))
+    best = np.linalg.solve(matrix, right)
+    return best, np.sqrt(np.sum(weights * (np.interp(at, nodes, best) - values) ** 2))
+
+
 def sphere_contact(force, radius, modulus):
     """Contact radius a and peak pressure p0 of spheres under `force`, [J] 4.22 and 4.24."""
     a = np.cbrt(3.0 * force * radius / (4.0 * modulus))
     return a, 3.0 * force / (2.0 * np.pi * a**2)
+
+
+def mindlin_displacement(force, normal, a, compliance, mu):
+    """Tangential displacement of a sphere on a half-space whose tangential force grows to `force`; `compliance` is the
+    sum over the elastic bodies of (2 - nu) / G. [J] 7.41 to 7.44 (R. D. Mindlin 1949)."""
+    return 3.0 * mu * normal / (16.0 * a) * compliance * (1.0 - (1.0 - force / (mu * normal)) ** (2.0 / 3.0))
+
+
+def mindlin_loop_energy(amplitude, normal, a, compliance, mu):
+    """Work done in a cycle of the tangential force between +- amplitude: R. D. Mindlin and H. Deresiewicz (1953), J. Appl.
+    Mech. 20, 327-344; the area between mindlin_displacement's branches after Masing's rule
+    delta = delta* - 2 delta((Q* - Q) / 2)."""
+    k = amplitude / (mu * normal)
+    share = 1.0 - (1.0 - k) ** (5.0 / 3.0) - 5.0 * k / 6.0 * (1.0 + (1.0 - k) ** (2.0 / 3.0))
+    return 9.0 * (mu * normal) ** 2 / (10.0 * a) * compliance * share
 
 
 def hertz_pressure(r, a, p0):
@@ -71,6 +104,22 @@ def sphere_force_of_approach(approach, radius, materials, depths):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if approach_of(middle) < approach else (low, middle)
     return high
+
+
+def wave_closing_pressure(length, amplitude, E, nu):
+    """Mean pressure p* at which a rigid plane touches all of a wave amplitude (1 - cos(2 pi x / length)), [J] 13.7."""
+    return np.pi * E / (1.0 - nu**2) * amplitude / length
+
+
+def wave_half_width(mean, closing, length):
+    """Half-width a of the contact at each crest under a mean pressure, sin^2(pi a / length) = mean / p*, [J] 13.9."""
+    return length / np.pi * np.arcsin(np.sqrt(mean / closing))
+
+
+def wave_pressure(x, mean, closing, length):
+    """Pressure on a wave pressed by a rigid plane (H. M. Westergaard, J. Appl. Mech. 6 (1939) 49-53), [J] 13.8."""
+    inside = np.maximum(0.0, mean / closing - np.sin(np.pi * x / length) ** 2)
+    return np.where(np.asarray(x) < length / 2.0, 2.0 * mean * np.cos(np.pi * x / length) * np.sqrt(inside) / (mean / closing), 0.0)
 
 
 def flat_punch_pressure(x, force, a):
@@ -119,3 +168,43 @@ def boxed_disc_forces(shortening_x, shortening_y, R, E, nu):
 def uniaxial_plane_strain(pressure, E, nu):
     """(eps_x, eps_y) of a block under uniform pressure along y, free along x, plane strain."""
     return nu * (1.0 + nu) * pressure / E, -(1.0 - nu**2) * pressure / E
+
+
+def slider_after_step(times, old_rate, new_rate, law, stiffness, evolution):
+    """Friction coefficient of a massless spring slider with rate-and-state friction whose drive changes its rate at time 0.
+
+    law: mu, a, b, L, v0; stiffness: per area, over the pressure (1/length); times > 0, ascending. Before the step it slides
+    steadily. From f = mu + a ln(v/v0) + b theta and df/dt = k (V - v), with y = ln(v/v0):
+        a dy/dt = k (V - v) - b dtheta/dt,   dtheta/dt = -(v/L)(theta + y)  (slip),  (v0/L) e^-theta - v/L  (ageing, where
+    e^theta = v0 Theta / L). A. Ruina, J. Geophys. Res. 88 (1983) 10359-10370; J. H. Dieterich, 84 (1979) 2161-2168.
+    """
+
+    def rates(state):
+        y, theta = state
+        v = law["v0"] * np.exp(y)
+        if evolution == "slip":
+            dtheta = -v / law["L"] * (theta + y)
+        else:
+            dtheta = law["v0"] / law["L"] * np.exp(-theta) - v / law["L"]
+        return np.array([(stiffness * (new_rate - v) - law["b"] * dtheta) / law["a"], dtheta])
+
+    start = np.log(old_rate / law["v0"])
+    states = runge_kutta(rates, np.array([start, -start]), times, 0.1 * law["a"] / (stiffness * new_rate))
+    return law["mu"] + law["a"] * states[:, 0] + law["b"] * states[:, 1]
+
+
+def runge_kutta(rates, start, times, largest_step):
+    """States at `times` (ascending, after 0) of d state/dt = rates(state), by the classical method of order 4."""
+    states, state, now = [], start, 0.0
+    for time in times:
+        count = int(np.ceil((time - now) / largest_step))
+        h = (time - now) / count
+        for _ in range(count):
+            k1 = rates(state)
+            k2 = rates(state + 0.5 * h * k1)
+            k3 = rates(state + 0.5 * h * k2)
+            k4 = rates(state + h * k3)
+            state = state + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        now = time
+        states.append(state)
+    return np.array(states)

@@ -157,6 +157,7 @@ Certificate Case::certify() const {
   return amontons::certify({.mesh = mesh,
                             .space = space,
                             .displacement = displacement,
+                            .increment = displacement,
                             .pairs = pairs,
                             .samples = samples,
                             .external_forces = external,
@@ -263,6 +264,34 @@ Case compressed_blocks(MPI_Comm comm, int dim) {
                   .work_uncertainty = 0.0,
                   .virtual_work_defect = 0.0,
                   .virtual_work_scale = 0.04};
+  return scene;
+}
+
+Case stretched_block(MPI_Comm comm, int dim) {
+  Case scene = compressed_blocks(comm, dim);
+  const double stretch = 0.02;
+  displace(scene, [&](const auto& x) {
+    std::array<double, 3> u{};
+    u[dim - 1] = -0.01 * x[dim - 1];
+    return u;
+  });
+  std::set<std::int32_t> of_upper;
+  for (const auto& block : scene.mesh.blocks)
+    if (block.body == 1) of_upper.insert(block.nodes.begin(), block.nodes.end());
+  for (const std::int32_t node : of_upper)
+    scene.displacement[std::size_t(node) * dim] += stretch * (scene.mesh.position(node)[0] - 0.5);
+  scene.pairs[0].friction = Coulomb{.mu = 0.3};
+  ContactSamples& samples = scene.samples[0];
+  samples.has_friction = true;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double slip = stretch * (samples.place[i][0] - 0.5);
+    samples.shear.push_back({slip > 0.0 ? -0.3 : 0.3, 0.0, 0.0});
+    samples.slip.push_back({slip, 0.0, 0.0});
+    samples.accumulated_slip.push_back(std::abs(slip));
+    samples.tau_c.push_back(0.3);
+    samples.friction_context.push_back({.dt = 1.0, .factor = 1.0, .new_contact = true});
+    samples.friction_state_old.push_back({});
+  }
   return scene;
 }
 

@@ -24,7 +24,7 @@ Mesh block_mesh(MPI_Comm comm, int dim, const std::vector<Block>& blocks, bool w
 struct Case {
   Mesh mesh;
   Space space = Space::Solid;
-  std::vector<double> displacement, external;
+  std::vector<double> displacement, external; // the displacement comes in one increment
   std::vector<ContactPairNames> pairs;
   std::vector<ContactSamples> samples;
   EnergyLedger energy;
@@ -48,6 +48,10 @@ ContactSamples uniform_samples(const Mesh& mesh, const std::string& slave, doubl
 /// Two blocks of unit sides, one on the other with different meshes, without Poisson effect, compressed by 1 % by a
 /// pressure of 1 on the upper one: u = -0.01 z, E = 100. The upper block's bottom is the slave.
 Case compressed_blocks(MPI_Comm comm, int dim);
+
+/// The same with friction of mu = 0.3: the upper block is also stretched sideways by 2 %, about its middle, so that its
+/// bottom slides outwards on both sides and the shear of 0.3 on it points inwards, without a resultant.
+Case stretched_block(MPI_Comm comm, int dim);
 
 const Certificate::Item& item(const Certificate& certificate, const std::string& name);
 

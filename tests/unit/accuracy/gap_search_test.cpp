@@ -38,7 +38,8 @@ struct Chain {
   MasterHit hit(std::array<double, 3> place, std::array<double, 3> displacement_of_point,
                 std::array<double, 3> normal) const {
     const SlavePoint point{place, displacement_of_point, normal, 1.0};
-    return find_on_master(mesh, displacement, facets, std::span(&point, 1)).front();
+    const auto points = std::span(&point, 1);
+    return find_on_master(mesh, displacement, facets, points, reach_of(mesh, displacement, facets, points)).front();
   }
 };
 

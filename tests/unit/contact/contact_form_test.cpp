@@ -34,13 +34,14 @@ struct Fixture {
   ContactForm* form = nullptr;
   VecHandle u;
 
-  Fixture(int dim, Enforcement enforcement, ProjectionKind projection = {})
+  Fixture(int dim, Enforcement enforcement, ProjectionKind projection = {}, Integration integration = {})
       : mesh(two_blocks_mesh(PETSC_COMM_WORLD, dim, 3, 4, 0.01)) {
     if (std::holds_alternative<Semismooth>(enforcement))
       fields.push_back(multiplier_nodes(mesh, "interface", "upper_bottom"));
     layout = std::make_unique<DofLayout>(mesh, std::vector<TiedGroup>{}, fields);
     auto pair = declare_pair(mesh, enforcement);
     pair.projection = projection;
+    pair.integration = integration;
     auto contact = std::make_unique<ContactForm>(*layout, std::move(pair));
     form = contact.get();
     std::vector<std::unique_ptr<Form>> forms;
@@ -115,13 +116,15 @@ void check_tangent(Fixture& fixture) {
 TEST_CASE("tangent is the derivative of the residual, and symmetric") {
   for (const int dim : {2, 3})
     for (const Enforcement& enforcement : {Enforcement(Penalty{}), Enforcement(Uzawa{}), Enforcement(Semismooth{0})})
-      for (const ProjectionKind& projection : {ProjectionKind(ClosestPoint{}), ProjectionKind(SlaveNormal{})}) {
-        CAPTURE(dim);
-        CAPTURE(enforcement.index());
-        CAPTURE(projection.index());
-        Fixture fixture(dim, enforcement, projection);
-        check_tangent(fixture);
-      }
+      for (const ProjectionKind& projection : {ProjectionKind(ClosestPoint{}), ProjectionKind(SlaveNormal{})})
+        for (const Integration& integration : {Integration(FacetIntegration{}), Integration(SegmentIntegration{})}) {
+          CAPTURE(dim);
+          CAPTURE(enforcement.index());
+          CAPTURE(projection.index());
+          CAPTURE(integration.index());
+          Fixture fixture(dim, enforcement, projection, integration);
+          check_tangent(fixture);
+        }
 }
 
 TEST_CASE("a tangent is assembled again only when the status of a point has changed") {

@@ -23,6 +23,7 @@ struct Scene {
   FrictionLaw law = Coulomb{.mu = 0.3};
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Space space = Space::PlaneStrain;
+  Integration integration = FacetIntegration{};
 };
 
 /// Two blocks with nothing but a frictional pair between them, and displacements by formula.
@@ -53,6 +54,7 @@ struct Fixture {
                      .master = std::string("lower_top"),
                      .enforcement = scene.enforcement,
                      .projection = {},
+                     .integration = scene.integration,
                      .space = scene.dim == 3 ? Space::Solid : scene.space,
                      .stiffness = {100.0, 300.0}};
     pair.alpha = 3.0;
@@ -190,6 +192,16 @@ TEST_CASE("tangent of a frictional pair is the derivative of its residual in sti
         }
 }
 
+TEST_CASE("tangent of a frictional pair on segments") {
+  for (const int dim : {2, 3})
+    for (const Enforcement& enforcement : {Enforcement(Penalty{}), Enforcement(Uzawa{}), Enforcement(Semismooth{0})}) {
+      CAPTURE(dim);
+      CAPTURE(enforcement.index());
+      Fixture fixture({.dim = dim, .enforcement = enforcement, .integration = SegmentIntegration{}});
+      check_tangent(fixture, Motion::Mixed);
+    }
+}
+
 TEST_CASE("axisymmetric: tangent, and tractions by the full turn") {
   Fixture fixture({.space = Space::Axisymmetric});
   check_tangent(fixture, Motion::Mixed);
@@ -245,6 +257,75 @@ TEST_CASE("history: an accepted slip leaves its traction, a rolled back one noth
   const auto back = fixture.form->totals(fixture.problem->state_at(fixture.u));
   CHECK(back.force[1] > 1.0);
   CHECK(std::abs(back.tangential_force[0]) < 1e-10 * back.force[1]);
+}
+
+TEST_CASE("release heals: what a law remembers is void when a point closes again") {
+  constexpr double mu_s = 0.5, mu_k = 0.2;
+  Fixture fixture({.law = SlipWeakening{.mu_s = mu_s, .mu_k = mu_k, .D_c = 0.01}});
+  const auto check_coefficient = [&](double expected) {
+    const auto samples = fixture.form->samples(fixture.problem->state_at(fixture.u));
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (samples.status[i] != ContactStatus::Open)
+        CHECK(samples.tau_c[i] == doctest::Approx(expected * samples.pressure[i]).epsilon(1e-12));
+    return fixture.form->totals(fixture.problem->state_at(fixture.u));
+  };
+  fixture.prepare(Motion::Slip); // over nearly 0.08
+  CHECK(check_coefficient(mu_k).slip_area > 0.1);
+  fixture.problem->commit(fixture.u);
+  CHECK(check_coefficient(mu_k).area > 0.1);   // at rest it stays weak
+  fixture.set(fixture.u, 0.08, 0.0, 0.0, 0.0); // nowhere in contact
+  fixture.problem->commit(fixture.u);
+  fixture.set(fixture.u, 0.08, 0.0, 1.0, 0.0);
+  CHECK(check_coefficient(mu_s).stick_area > 0.1);
+}
+
+TEST_CASE("no time passes: rate-dependent laws slide at the rate they say") {
+  const std::pair<FrictionLaw, double> cases[] = {
+      {RateAndState{.mu = 0.3, .a = 0.01, .b = 0.02, .L = 1e-3, .v0 = 2.0}, 0.3}, // v = v0, in its steady state
+      {VelocityWeakening{.mu_s = 0.4, .mu_k = 0.2, .v_c = 0.5}, 0.4},             // v = 0
+      {WeakeningStrengthening{.mu_s = 0.4, .mu_k = 0.2, .v_c = 0.5, .kappa = 3.0}, 0.4}};
+  for (const auto& [law, coefficient] : cases) {
+    CAPTURE(law.index());
+    Fixture fixture({.law = law});
+    fixture.prepare(Motion::Slip);
+    fixture.problem->begin_increment(0.5, fixture.u); // again the time of the accepted state
+    const auto samples = fixture.form->samples(fixture.problem->state_at(fixture.u));
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (samples.status[i] == ContactStatus::Slip)
+        CHECK(std::hypot(samples.shear[i][0], samples.shear[i][1]) ==
+              doctest::Approx(coefficient * samples.pressure[i]).epsilon(1e-10));
+    CHECK(fixture.form->totals(fixture.problem->state_at(fixture.u)).slip_area > 0.1);
+  }
+}
+
+TEST_CASE("no coefficient, or no pressure: slip without traction, and a tangent that is finite") {
+  const FrictionLaw laws[] = {Coulomb{}, RateAndState{.mu = 0.3, .a = 0.01, .b = 0.02, .L = 1e-3},
+                              PrakashClifton{.mu = 0.3, .L = 1e-3},
+                              SlipWeakening{.mu_s = 0.4, .mu_k = 0.2, .D_c = 0.1}};
+  for (const Enforcement& enforcement : {Enforcement(Penalty{}), Enforcement(Semismooth{0})})
+    for (const auto& law : laws) {
+      CAPTURE(enforcement.index());
+      CAPTURE(law.index());
+      Fixture fixture({.enforcement = enforcement, .law = law});
+      fixture.prepare(Motion::Slip);
+      const bool has_pressure = law.index() == 0;
+      if (!has_pressure) { // touching: gap0 - 0.05 down = 0, but for rounding; no multipliers
+        fixture.set(fixture.u, 0.08, 0.0, gap0 / 0.05, 0.0);
+        VecArray values(fixture.u);
+        for (PetscInt i = fixture.mesh.num_owned * 2; i < values.size(); ++i)
+          values[i] = 0.0;
+      }
+      auto matrix = fixture.problem->new_matrix();
+      REQUIRE(fixture.problem->tangent(fixture.u, matrix)); // of the first guess
+      fixture.problem->tangent(fixture.u, matrix);
+      double size = 0.0;
+      CHECK(MatNorm(matrix, NORM_FROBENIUS, &size) == 0);
+      CHECK(std::isfinite(size));
+      const auto totals = fixture.form->totals(fixture.problem->state_at(fixture.u));
+      CHECK((totals.force[1] > 0.1) == has_pressure);
+      CHECK(std::abs(totals.tangential_force[0]) < 1e-11);
+      CHECK(std::abs(totals.dissipation) < 1e-11);
+    }
 }
 
 TEST_CASE("friction does not depend on the frame") {

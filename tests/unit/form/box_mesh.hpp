@@ -193,4 +193,39 @@ inline Mesh box_mesh(MPI_Comm comm, ElementType type, std::array<int, 3> counts,
   return mesh;
 }
 
+/// Puts the middles of the cells' edges and faces back on straight sides.
+inline void straighten(Mesh& mesh) {
+  for (const auto& block : mesh.blocks) {
+    const ElementType corner_type = linear_element(block.type);
+    std::vector<double> values(num_nodes(corner_type));
+    const int dim = mesh.dim;
+    for (int m = num_nodes(corner_type); m < num_nodes(block.type); ++m) {
+      shape_values(corner_type, reference_nodes(block.type).subspan(std::size_t(m) * dim, dim), values);
+      for (std::int32_t c = 0; c < block.size(); ++c)
+        for (int i = 0; i < dim; ++i) {
+          double place = 0;
+          for (std::size_t a = 0; a < values.size(); ++a)
+            place += values[a] * mesh.position(block.cell(c)[a])[i];
+          mesh.coordinates[block.cell(c)[m] * dim + i] = place;
+        }
+    }
+  }
+}
+
+/// Moves the corners inside the mesh by up to `reach` a direction, without a pattern (the fractions of multiples of
+/// irrational numbers), and keeps the sides straight.
+inline void roughen(Mesh& mesh, double reach) {
+  std::vector<bool> outside(mesh.num_local());
+  for (const auto& [name, nodes] : mesh.node_groups)
+    for (const auto node : nodes)
+      outside[node] = true;
+  const double irrational[] = {std::sqrt(2.0), std::sqrt(3.0), std::sqrt(5.0)};
+  for (std::int32_t node = 0; node < mesh.num_local(); ++node)
+    for (int i = 0; i < mesh.dim && !outside[node]; ++i) {
+      const double multiple = irrational[i] * double(mesh.keys[node] % 99991);
+      mesh.coordinates[node * mesh.dim + i] += reach * (2 * (multiple - std::floor(multiple)) - 1);
+    }
+  straighten(mesh);
+}
+
 } // namespace amontons::testing

@@ -31,30 +31,16 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
+/// Has the element a cell bubble in this space?
+bool has_bubble(ElementType type, Space space) {
+  return (type == ElementType::Triangle6 || type == ElementType::Tetrahedron10) && space != Space::PlaneStress;
+}
+
 /// A skewed and smoothly bent box at x > 0.
 std::array<double, 3> bent(std::array<double, 3> p) {
   const auto [x, y, z] = p;
   return {1 + x + 0.2 * y + 0.1 * std::sin(2 * x + 3 * y + z), y - 0.15 * x + 0.1 * std::sin(3 * x - y + 2 * z),
           z + 0.1 * x * y - 0.08 * std::sin(2 * y + x)};
-}
-
-/// Puts the middles of the cells' edges and faces back on straight sides.
-void straighten(Mesh& mesh) {
-  for (const auto& block : mesh.blocks) {
-    const ElementType corner_type = linear_element(block.type);
-    std::vector<double> values(num_nodes(corner_type));
-    const int dim = mesh.dim;
-    for (int m = num_nodes(corner_type); m < num_nodes(block.type); ++m) {
-      shape_values(corner_type, reference_nodes(block.type).subspan(std::size_t(m) * dim, dim), values);
-      for (std::int32_t c = 0; c < block.size(); ++c)
-        for (int i = 0; i < dim; ++i) {
-          double place = 0;
-          for (std::size_t a = 0; a < values.size(); ++a)
-            place += values[a] * mesh.position(block.cell(c)[a])[i];
-          mesh.coordinates[block.cell(c)[m] * dim + i] = place;
-        }
-    }
-  }
 }
 
 /// Curved sides where the quadrature integrates the gradients exactly on them (all but the ten-node tetrahedron).
@@ -168,7 +154,7 @@ TEST_CASE("patch test: a linear displacement gives constant stress and no force 
 
     std::vector<double> stress(linear_strain(space).size());
     make_law(soft, space)->stress(linear_strain(space), stress);
-    form.for_each_batch({u.data(), std::size_t(u.size())}, [&](const PointBatch& batch) {
+    form.for_each_batch(state_of(u), [&](const PointBatch& batch) {
       for (std::size_t i = 0; i < batch.stress.size(); ++i)
         REQUIRE(batch.stress[i] == doctest::Approx(stress[i % stress.size()]).epsilon(1e-11));
     });
@@ -202,9 +188,12 @@ TEST_CASE("forces are the derivative of the stored energy, the tangent that of t
       } else {
         CHECK(remainder(1) < 1e-12 * (K * v).norm());
       }
-      // The energy is a polynomial of degree 4 at most, for which the five-point difference is exact.
+      // The energy is a polynomial of degree 4 at most, for which the five-point difference is exact; with a bubble
+      // that answers to a law that stiffens it is a smooth function, and the error is of fourth order in the step.
       const auto energy = [&](double h) { return form.stored_energy(state_of(u + h * v)); };
-      const double h = 0.1, slope = (8 * (energy(h) - energy(-h)) - (energy(2 * h) - energy(-2 * h))) / (12 * h);
+      const bool polynomial = beta <= 0 || !has_bubble(type, space);
+      const double h = polynomial ? 0.1 : 1e-3;
+      const double slope = (8 * (energy(h) - energy(-h)) - (energy(2 * h) - energy(-2 * h))) / (12 * h);
       CHECK(std::abs(slope - force.dot(v)) < 1e-9 * force.norm() * v.norm());
       if (beta <= 0) CHECK(form.stored_energy(state_of(u)) == doctest::Approx(0.5 * u.dot(K * u)).epsilon(1e-12));
     }
@@ -258,9 +247,9 @@ TEST_CASE("nodal stress of a linear displacement is its constant stress at every
     CAPTURE(int(space));
     const Mesh mesh = small_mesh(type, PETSC_COMM_WORLD);
     const DofLayout layout(mesh, {}, {});
-    const BulkForm form(layout, space, {make_law(soft, space)});
+    BulkForm form(layout, space, {make_law(soft, space)});
     const Eigen::VectorXd u = nodal_values(mesh, [&](auto x) { return linear_field(space, x); });
-    const NodalStress nodal = form.nodal_stress({u.data(), std::size_t(u.size())});
+    const NodalStress nodal = form.nodal_stress(state_of(u));
     const auto strain = linear_strain(space);
     std::vector<double> stress(strain.size());
     form.law(0).stress(strain, stress);
@@ -280,11 +269,11 @@ TEST_CASE("nodal stress does not depend on the number of ranks") {
   for (const ElementType type : {ElementType::Hexahedron8, ElementType::Tetrahedron10}) {
     const Mesh alone = small_mesh(type), spread = small_mesh(type, PETSC_COMM_WORLD);
     const DofLayout layout_alone(alone, {}, {}), layout_spread(spread, {}, {});
-    const BulkForm form_alone(layout_alone, Space::Solid, {make_law(soft, Space::Solid)});
-    const BulkForm form_spread(layout_spread, Space::Solid, {make_law(soft, Space::Solid)});
+    BulkForm form_alone(layout_alone, Space::Solid, {make_law(soft, Space::Solid)});
+    BulkForm form_spread(layout_spread, Space::Solid, {make_law(soft, Space::Solid)});
     const Eigen::VectorXd u_alone = nodal_values(alone, field), u_spread = nodal_values(spread, field);
-    const auto wanted = form_alone.nodal_stress({u_alone.data(), std::size_t(u_alone.size())}).stress;
-    const auto got = form_spread.nodal_stress({u_spread.data(), std::size_t(u_spread.size())}).stress;
+    const auto wanted = form_alone.nodal_stress(state_of(u_alone)).stress;
+    const auto got = form_spread.nodal_stress(state_of(u_spread)).stress;
     std::map<std::uint64_t, std::int32_t> by_key;
     for (std::int32_t node = 0; node < alone.num_local(); ++node)
       by_key[alone.keys[node]] = node;

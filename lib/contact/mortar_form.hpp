@@ -1,0 +1,83 @@
+// A frictionless contact pair whose tractions are given from outside: nodal multipliers with the dual basis, found by a
+// solver of variational inequalities as the forces on bounds (MortarTransform). Adds their forces to the residual and
+// nothing to the tangent.
+#pragma once
+
+#include "contact/contact_points.hpp"
+#include "contact/dual_basis.hpp"
+#include "contact/pair_report.hpp"
+
+#include <map>
+#include <vector>
+
+namespace amontons {
+
+class MortarForm : public Form, public PairReport {
+ public:
+  /// Searches. Collective.
+  MortarForm(const DofLayout& layout, ContactPair pair);
+
+  const char* name() const override { return "contact"; }
+  void couple(Coupling&) const override {}
+  void add_residual(const State& state, Residual& residual) override;
+  void add_tangent(const State&, Tangent&) override {}
+  bool tangent_is_constant() const override { return true; }
+  void commit(const State&) override { multipliers_old_ = multipliers_; }
+  void roll_back() override { multipliers_ = multipliers_old_; }
+
+  const ContactPair& pair() const override { return pair_; }
+  /// All nodes of the slave surface that this rank knows; for order 2 the controls that go with them.
+  const NodeField& nodes() const override { return nodes_; }
+  const std::vector<double>& multipliers() const override { return multipliers_; }
+  void hold_multipliers(std::vector<double> multipliers) override { multipliers_ = std::move(multipliers); }
+  ContactSamples samples(const State& state) override;
+  ContactTotals totals(const State& state) override;
+  double work_of_displacement(const State& state) override;
+  std::array<double, 3> rigid_shift() const override { return points_.rigid_shift(); }
+
+  /// What the constraint of a node is made of, over all ranks: gap + normal · (c_slave − Σ P u_master) >= 0.
+  struct Constraint {
+    double weight = 0.0;            // D = ∫ ψ = ∫ N over the covered part, area; 0: no master covers the node
+    std::array<double, 3> normal{}; // unit mean of the points' normals, weighted with N
+    double gap = 0.0;               // initial: ∫ ψ g0 / D, length
+  };
+  const std::vector<Constraint>& constraints() const { return constraints_; }
+  /// This rank's part of the rows of P = D⁻¹ M, one a node of nodes(): node of master() -> coefficient.
+  std::vector<std::map<std::int32_t, double>> master_rows() const;
+  const MasterSurface* master() const { return points_.master(); }
+  const FacetSet& slave() const { return points_.slave(); }
+  /// This rank's part of a node's weight, on one facet.
+  double share(std::int32_t facet, std::size_t corner) const;
+  /// Where a local mesh node stands in nodes(), -1 for others.
+  std::int32_t place(std::int32_t node) const { return place_[node]; }
+  /// Moves a rigid master; returns whether normals and gaps are others than before. Collective.
+  bool move_rigid_master(double time);
+
+ private:
+  struct SlaveFacet {
+    std::size_t begin = 0, end = 0;            // of points
+    double size = 0.0;                         // h
+    std::vector<std::array<double, 3>> places; // of the controls
+    /// Rows of points that are not covered are zero; absent where the facet has too little cover.
+    std::optional<DualBasis> dual = std::nullopt;
+  };
+  void find_facets();
+  PointTable control_shape(std::int32_t facet) const;
+  Eigen::VectorXd whole_integrals(std::int32_t facet) const;
+  void find_constraints();
+  std::vector<double> nodal_gaps(const State& state);
+  bool is_covered(const ContactPoint& point) const { return point.master != ContactPoint::none; }
+
+  const DofLayout& layout_;
+  ContactPair pair_;
+  NodeField nodes_;
+  std::vector<std::int32_t> place_; // of a local mesh node in nodes_, or -1
+  ContactPoints points_;
+  NodeSpace constraint_space_, gap_space_;
+  std::vector<SlaveFacet> facets_; // of the slave FacetSet
+  std::vector<Constraint> constraints_;
+  std::vector<double> multipliers_, multipliers_old_; // traction, <= 0
+  double rigid_time_ = 0.0;
+};
+
+} // namespace amontons

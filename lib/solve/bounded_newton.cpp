@@ -1,0 +1,239 @@
+#include "solve/bounded_newton.hpp"
+
+#include "base/timer.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace amontons {
+
+namespace {
+
+/// Iterations that take their full step without asking whether the energy falls: nearly all solves end within them.
+constexpr PetscInt free_iterations = 12;
+constexpr int most_halvings = 30;
+/// Part of the promised fall of energy that a shortened step must bring (Armijo).
+constexpr double least_fall = 1e-4;
+
+bool is_semismooth() {
+  std::array<char, 64> type{};
+  AMT_PETSC(PetscOptionsGetString(nullptr, nullptr, "-snes_type", type.data(), type.size(), nullptr));
+  return std::string(type.data()) == SNESVINEWTONSSLS;
+}
+
+} // namespace
+
+std::string choose_bounded_solver(const Problem& problem) {
+  // PETSc compares a length with this; a bounded unknown that is on its bound is there to the last digit.
+  default_option("-snes_vi_zero_tolerance", "0");
+  if (is_semismooth()) { // its Jacobian is not symmetric
+    default_option("-snes_linesearch_type", SNESLINESEARCHBT);
+    default_option("-ksp_type", KSPPREONLY);
+    default_option("-pc_type", PCLU);
+  }
+  default_option("-snes_linesearch_type", SNESLINESEARCHSHELL);
+  return choose_linear_solver(problem) + " on " + (is_semismooth() ? "semismooth" : "reduced") + " systems";
+}
+
+BoundedNewton::BoundedNewton(Problem& problem, BoundedUnknowns& bounds, std::function<bool()> interrupted)
+    : problem_(problem), bounds_(bounds), interrupted_(std::move(interrupted)), tangent_(problem.new_matrix()),
+      unknowns_(problem.layout().new_vector()), changed_(problem.layout().new_vector()),
+      residual_(problem.layout().new_vector()), changed_residual_(problem.layout().new_vector()),
+      upper_(problem.layout().new_vector()), forces_(problem.layout().new_vector()) {
+  AMT_PETSC(VecSet(upper_, PETSC_INFINITY));
+  AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
+  AMT_PETSC(SNESSetType(snes_, SNESVINEWTONRSLS));
+  AMT_PETSC(SNESSetFunction(snes_, changed_residual_, evaluate_residual, this));
+  AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
+  AMT_PETSC(SNESSetFromOptions(snes_));
+  SNESLineSearch search = nullptr;
+  AMT_PETSC(SNESGetLineSearch(snes_, &search));
+  AMT_PETSC(SNESLineSearchSetFromOptions(search));
+  AMT_PETSC(SNESLineSearchShellSetUserFunc(search, search_line, this));
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  PetscBool is_factorization = PETSC_FALSE;
+  AMT_PETSC(SNESGetKSP(snes_, &ksp));
+  AMT_PETSC(KSPGetPC(ksp, &pc));
+  AMT_PETSC(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &is_factorization, PCLU, PCCHOLESKY, ""));
+  if (!is_factorization && !is_semismooth()) preconditioner_ = std::make_unique<WholePreconditioner>(snes_);
+}
+
+void BoundedNewton::take_transform() {
+  AMT_PETSC(MatDuplicate(bounds_.transform(), MAT_COPY_VALUES, variation_.put()));
+  const auto varies = problem_.layout().new_vector(), diagonal = problem_.layout().new_vector();
+  AMT_PETSC(MatGetDiagonal(variation_, diagonal));
+  {
+    VecArray flags(varies), kept(diagonal);
+    const PetscInt first = problem_.layout().first_equation();
+    for (PetscInt i = 0; i < flags.size(); ++i) {
+      flags[i] = problem_.is_prescribed(first + i) ? 0.0 : 1.0;
+      if (flags[i] == 0.0) kept[i] = 1.0;
+    }
+  }
+  AMT_PETSC(MatDiagonalScale(variation_, nullptr, varies));
+  AMT_PETSC(MatDiagonalSet(variation_, diagonal, INSERT_VALUES));
+  changed_tangent_.reset();
+  if (!preconditioner_) return;
+  // û of a rigid motion u is T⁻¹ u.
+  const auto modes = rigid_body_modes(problem_.layout());
+  PetscInt count = 0;
+  const Vec* vectors = nullptr;
+  AMT_PETSC(MatNullSpaceGetVecs(modes, nullptr, &count, &vectors));
+  std::vector<VecHandle> changed;
+  std::vector<Vec> basis;
+  for (PetscInt i = 0; i < count; ++i) {
+    changed.push_back(problem_.layout().new_vector());
+    AMT_PETSC(MatMult(bounds_.inverse(), vectors[i], changed.back()));
+    for (const Vec other : basis) { // Gram-Schmidt
+      PetscScalar along = 0.0;
+      AMT_PETSC(VecDot(changed.back(), other, &along));
+      AMT_PETSC(VecAXPY(changed.back(), -along, other));
+    }
+    AMT_PETSC(VecNormalize(changed.back(), nullptr));
+    basis.push_back(changed.back());
+  }
+  NullSpaceHandle space;
+  AMT_PETSC(MatNullSpaceCreate(problem_.comm(), PETSC_FALSE, count, basis.data(), space.put()));
+  preconditioner_->take_modes(std::move(space));
+}
+
+/// Tᵀ K T, with the pattern of the last one if there is one.
+void BoundedNewton::transform_tangent() {
+  const Phase phase("matrix");
+  if (changed_tangent_) {
+    Mat matrix = changed_tangent_;
+    AMT_PETSC(MatPtAP(tangent_, variation_, MAT_REUSE_MATRIX, PETSC_DEFAULT, &matrix));
+  } else {
+    AMT_PETSC(MatPtAP(tangent_, variation_, MAT_INITIAL_MATRIX, PETSC_DEFAULT, changed_tangent_.put()));
+    given_tangent_.reset();
+    if (is_semismooth()) AMT_PETSC(MatDuplicate(changed_tangent_, MAT_DO_NOT_COPY_VALUES, given_tangent_.put()));
+    Mat given = given_tangent_ ? given_tangent_.get() : changed_tangent_.get();
+    AMT_PETSC(SNESSetJacobian(snes_, given, given, evaluate_tangent, this));
+  }
+  AMT_PETSC(MatSetOption(changed_tangent_, MAT_SYMMETRIC, PETSC_TRUE));
+}
+
+/// Tᵀ r(T û).
+void BoundedNewton::find_residual(Vec changed, Vec result) {
+  AMT_PETSC(MatMult(bounds_.transform(), changed, unknowns_));
+  problem_.residual(unknowns_, residual_);
+  AMT_PETSC(MatMultTranspose(variation_, residual_, result));
+}
+
+PetscErrorCode BoundedNewton::evaluate_residual(SNES, Vec changed, Vec result, void* self) {
+  auto& newton = *static_cast<BoundedNewton*>(self);
+  return guarded(newton.kept_, [&] { newton.find_residual(changed, result); });
+}
+
+PetscErrorCode BoundedNewton::evaluate_tangent(SNES, Vec changed, Mat, Mat, void* self) {
+  auto& newton = *static_cast<BoundedNewton*>(self);
+  return guarded(newton.kept_, [&] {
+    AMT_PETSC(MatMult(newton.bounds_.transform(), changed, newton.unknowns_));
+    if (newton.problem_.tangent(newton.unknowns_, newton.tangent_)) newton.transform_tangent();
+    if (newton.given_tangent_) AMT_PETSC(MatCopy(newton.changed_tangent_, newton.given_tangent_, SAME_NONZERO_PATTERN));
+  });
+}
+
+PetscErrorCode BoundedNewton::test_convergence(SNES snes, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
+                                               SNESConvergedReason* reason, void* self) {
+  auto& newton = *static_cast<BoundedNewton*>(self);
+  return guarded(newton.kept_, [&] {
+    *reason = judge_residual(snes, newton.problem_, iteration, norm);
+    if (newton.interrupted_ && newton.interrupted_()) *reason = SNES_BREAKOUT_INNER_ITER;
+  });
+}
+
+PetscErrorCode BoundedNewton::search_line(SNESLineSearch search, void* self) {
+  auto& newton = *static_cast<BoundedNewton*>(self);
+  return guarded(newton.kept_, [&] { newton.descend(search); });
+}
+
+/// Projected Newton step. After the first iterations steps are halved until the potential energy falls, as D. P.
+/// Bertsekas (SIAM J. Control Optim. 20 (1982) 221-246) does, so that active sets cannot go round in circles. The fall
+/// is the residual's work along the step by the trapezoidal rule: exact for linear elasticity.
+void BoundedNewton::descend(SNESLineSearch search) {
+  Vec start = nullptr, force = nullptr, step = nullptr, next = nullptr, next_force = nullptr;
+  SNESLineSearchVIProjectFunc project = nullptr;
+  SNESLineSearchVINormFunc inactive_norm = nullptr;
+  PetscInt iteration = 0;
+  AMT_PETSC(SNESLineSearchGetVecs(search, &start, &force, &step, &next, &next_force));
+  AMT_PETSC(SNESLineSearchGetVIFunctions(search, &project, &inactive_norm));
+  AMT_PETSC(SNESGetIterationNumber(snes_, &iteration));
+  const auto move = problem_.layout().new_vector();
+  const auto take = [&](double length) {
+    AMT_PETSC(VecWAXPY(next, -length, step, start));
+    AMT_PETSC(project(snes_, next));
+    AMT_PETSC(SNESComputeFunction(snes_, next, next_force));
+  };
+  const auto energy_falls = [&] {
+    PetscScalar before = 0.0, after = 0.0;
+    AMT_PETSC(VecWAXPY(move, -1.0, start, next));
+    AMT_PETSC(VecDot(move, force, &before));
+    AMT_PETSC(VecDot(move, next_force, &after));
+    return 0.5 * (before + after) <= least_fall * before;
+  };
+  double length = 1.0;
+  take(length);
+  for (int halving = 0; iteration >= free_iterations && !energy_falls(); ++halving) {
+    length = halving < most_halvings ? 0.5 * length : 1.0; // no descent within rounding: Newton knows better
+    take(length);
+    if (length == 1.0) break;
+  }
+  PetscReal size = 0.0, norm = 0.0, step_size = 0.0;
+  AMT_PETSC(VecCopy(next, start));
+  AMT_PETSC(VecCopy(next_force, force));
+  AMT_PETSC(inactive_norm(snes_, force, start, &norm));
+  AMT_PETSC(VecNorm(start, NORM_2, &size));
+  AMT_PETSC(VecNorm(step, NORM_2, &step_size));
+  AMT_PETSC(SNESLineSearchSetNorms(search, size, norm, length * step_size));
+  AMT_PETSC(SNESLineSearchSetLambda(search, length));
+}
+
+void BoundedNewton::start_from(Vec unknowns) {
+  AMT_PETSC(MatMult(bounds_.inverse(), unknowns, changed_));
+  VecArray values(changed_);
+  VecReader lower(bounds_.lower()), forces(forces_);
+  for (PetscInt i = 0; i < values.size(); ++i)
+    if (forces[i] > 0.0) values[i] = lower[i];
+}
+
+/// Forces on the bounds that are touched, by the test of the primal-dual active set.
+Vec BoundedNewton::contact_forces() {
+  const auto diagonal = problem_.layout().new_vector();
+  AMT_PETSC(MatGetDiagonal(changed_tangent_, diagonal));
+  VecArray forces(forces_);
+  VecReader values(changed_), lower(bounds_.lower()), residual(changed_residual_), stiffness(diagonal);
+  for (PetscInt i = 0; i < forces.size(); ++i) {
+    const bool is_bounded = lower[i] > PETSC_NINFINITY;
+    forces[i] = is_bounded && residual[i] > stiffness[i] * (values[i] - lower[i]) ? residual[i] : 0.0;
+  }
+  return forces_;
+}
+
+SolveOutcome BoundedNewton::solve(Vec unknowns) {
+  kept_ = nullptr;
+  const Phase phase("linear solver");
+  bounds_.release();
+  const bool moved = bounds_.update(problem_.time()) || !variation_;
+  if (moved) take_transform();
+  if (problem_.tangent(unknowns, tangent_) || moved) transform_tangent();
+  AMT_PETSC(SNESVISetVariableBounds(snes_, bounds_.lower(), upper_));
+  start_from(unknowns);
+  const PetscErrorCode code = SNESSolve(snes_, nullptr, changed_);
+  if (kept_) std::rethrow_exception(kept_);
+  AMT_PETSC(code);
+  SolveOutcome outcome = outcome_of(snes_, problem_);
+  outcome.factorizations = outcome.newton;
+  if (!outcome.converged) return outcome;
+  find_residual(changed_, changed_residual_);
+  AMT_PETSC(VecCopy(unknowns_, unknowns));
+  bounds_.hold_forces(contact_forces());
+  problem_.residual(unknowns, residual_);
+  double norm = 0.0;
+  AMT_PETSC(VecNorm(residual_, NORM_2, &norm));
+  outcome.residual = problem_.force_scale() > 0.0 ? norm / problem_.force_scale() : 0.0;
+  return outcome;
+}
+
+} // namespace amontons

@@ -1,0 +1,102 @@
+"""Contact as a variational inequality: a free boundary that is known, and the scenes of the other formulations."""
+import math
+
+import numpy as np
+
+import common_checks
+import references
+
+
+class Wave:
+    """A run of wavy_block next to Westergaard's solution for the mean pressure that the run found."""
+
+    def __init__(self, results):
+        parameters = {"length": 2.0, "amplitude": 0.001, **results.deck["mesh"]["parameters"]}
+        law = results.deck["materials"]["rubber"]["elastic"]
+        self.results = results
+        self.length, self.h = parameters["length"], parameters["length"] / 2.0 / parameters["n"]
+        self.full = references.wave_closing_pressure(parameters["length"], parameters["amplitude"], law["E"], law["nu"])
+
+    def half_width(self, mean):
+        return references.wave_half_width(mean, self.full, self.length)
+
+    def pressure_error(self):
+        """Relative L2 error of the nodal pressure, linear between the nodes."""
+        surface = self.results.surface["crest"]
+        order = np.argsort(surface["places"][:, 0])
+        x, pressure = surface["places"][order, 0], surface["pressure"].ravel()[order]
+        place, weight = np.polynomial.legendre.leggauss(5)
+        half = 0.5 * np.diff(x)[:, None]
+        at = 0.5 * (x[1:] + x[:-1])[:, None] + half * place
+        mean = self.results.force("crest") / (self.length / 2.0)
+        exact = references.wave_pressure(at, mean, self.full, self.length)
+        error = np.interp(at, x, pressure) - exact
+        return math.sqrt(np.sum(half * weight * error**2) / np.sum(half * weight * exact**2))
+
+
+PRESSED = {"steps": [{"name": "load", "to": 0.7, "increments": 1}]}
+
+
+def free_boundary(bench):
+    """The edge of contact within a cell through loading and unloading, which go the same way."""
+    wave = Wave(bench.run("wavy_block"))
+    history = wave.results.history
+    area, force = history["contact_crest_area"], np.abs(history["contact_crest_force_y"])
+    mean = force / (wave.length / 2.0)
+    exact = np.array([wave.half_width(value) for value in mean[:-1]])
+    bench.below("edge of contact, distance from the free boundary in cells", np.abs(area[:-1] - exact).max() / wave.h, 1.0)
+    bench.below("mean pressure that closes the wave / largest", mean.max() / wave.full, 0.9)
+    bench.below("largest shrinking while loading", -np.diff(area[:4]).min(), 0.0)
+    bench.below("largest growing while unloading", np.diff(area[3:]).max(), 0.0)
+    bench.below("force on the way back", np.abs(force[4:7] - force[2::-1]).max() / force.max(), 1e-9)
+    bench.below("force at the end / largest", force[-1] / force.max(), 1e-9)
+
+
+def convergence(bench):
+    """First order of the pressure in L2, elements of order 1 and 2; iterations of the active set from scratch.
+
+    The pressure falls to zero like a root, so no element does better; where in a cell it does so makes the error jump from
+    mesh to mesh, so the bound is on error times number of cells.
+    """
+    for label, order, cells in (("quadrilaterals, order 1", 1, (16, 32, 64)), ("quadrilaterals, order 2", 2, (8, 16, 32))):
+        for n in cells:
+            results = bench.run("wavy_block", {**PRESSED, "mesh.parameters.n": n, "mesh.order": order})
+            error = Wave(results).pressure_error()
+            print(f"     {label}, n = {n}: L2 error of the pressure {error:.3e}")
+            bench.below(f"{label}, n = {n}: error x cells", error * n, 1.3)
+            bench.below(f"{label}, n = {n}: iterations", results.summary["newton_iterations"], 10)
+
+
+def triangles(bench):
+    for order in (1, 2):
+        results = bench.run("wavy_block", {**PRESSED, "mesh.parameters.quads": 0, "mesh.order": order})
+        bench.below(f"triangles, order {order}: L2 error of the pressure", Wave(results).pressure_error(), 0.04)
+
+
+def against_semismooth(scene, changes=None, tolerance=0.01):
+    """Peak pressure and force of each pair are those of semismooth within the discretization error."""
+
+    def check(bench):
+        reference = bench.run(scene, {**(changes or {}), "contact.*.enforce": {"semismooth": {}}})
+        results = bench.run(scene, {**(changes or {}), "contact.*.enforce": {"vi": {}}})
+        for pair in reference.surface:
+            bench.close(f"{pair}: peak pressure", results.peak_pressure(pair), reference.peak_pressure(pair), tolerance)
+            bench.close(f"{pair}: force", results.force(pair), reference.force(pair), tolerance)
+
+    return check
+
+
+def ranks(bench):
+    common_checks.ranks_agree(bench, "wavy_block", PRESSED)
+
+
+CASES = {
+    "wavy_block": {"free_boundary": free_boundary, "convergence": convergence, "triangles": triangles, "ranks": ranks},
+}
+VI = {
+    "hertz_2d": against_semismooth("hertz_2d"),
+    "hertz_axisymmetric": against_semismooth("hertz_axisymmetric"),
+    "hertz_3d": against_semismooth("hertz_3d", {"steps.0.increments": 1, "mesh.parameters.n": 6}, 0.02),
+    "disc_stack": against_semismooth("disc_stack", {"steps.0.increments": 1}),
+    "rigid_shapes": against_semismooth("rigid_shapes", {"steps.0.increments": 1}, 0.02),
+}

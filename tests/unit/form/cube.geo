@@ -1,0 +1,20 @@
+// Half of the unit cube a direction, unstructured tetrahedra of size h; sides as in box_mesh.hpp.
+DefineConstant[h = 0.1];
+Point(1) = {0, 0, 0, h};
+Point(2) = {0.5, 0, 0, h};
+Point(3) = {0.5, 0.5, 0, h};
+Point(4) = {0, 0.5, 0, h};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+raised[] = Extrude {0, 0, 0.5} { Surface{1}; };
+Physical Volume("block") = {raised[1]};
+Physical Surface("z-") = {1};
+Physical Surface("z+") = {raised[0]};
+Physical Surface("y-") = {raised[2]};
+Physical Surface("x+") = {raised[3]};
+Physical Surface("y+") = {raised[4]};
+Physical Surface("x-") = {raised[5]};
