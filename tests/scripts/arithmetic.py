@@ -154,6 +154,14 @@ class Paths(unittest.TestCase):
         deck_edit.set_value(deck, SCHEMA, "mesh.parameters.h", 0.2)
         self.assertEqual(deck["mesh"], {"order": 1, "parameters": {"h": 0.2}})
 
+    def test_all_entries(self):
+        deck = {"contact": [{"name": "a"}, {"name": "b", "enforce": "semismooth"}]}
+        varied = study_file.vary(None, deck, SCHEMA, "a", {"contact[*].enforce": {"penalty": {}}})
+        self.assertEqual([pair["enforce"] for pair in varied["contact"]], [{"penalty": {}}] * 2)
+        self.assertEqual(study_file.short_name("contact[*].enforce"), "enforce")
+        with self.assertRaisesRegex(deck_edit.StudyError, "no list with entries"):
+            deck_edit.check_path(DECK, SCHEMA, "mesh[*].order")
+
     def test_unknown_knobs_and_their_nearest(self):
         for path, words in (("mesh.ordr", "no 'ordr' in 'mesh'. Did you mean 'order'"), ("mehs.order", "Did you mean 'mesh'"),
                             ("h", "Did you mean 'mesh.parameters.h'"), ("contact[1].name", "has 1 entry"),
