@@ -1,6 +1,7 @@
 """Decks as data: reading them, and changing single keys by path with the schema that `amontons schema` prints.
 
-A path names a key as in `mesh.parameters.h` or `contact[0].enforce.penalty.alpha`; list entries count from 0.
+A path names a key as in `mesh.parameters.h` or `contact[0].enforce.penalty.alpha`; list entries count from 0, and [*]
+stands for all of them.
 """
 
 import copy
@@ -52,6 +53,17 @@ def split_path(path):
     return [int(entry) if entry else key for entry, key in re.findall(r"\[(\d+)\]|([^\[\].]+)", path)]
 
 
+def expand(deck, path):
+    """The paths that one with [*] stands for in a deck: one for each entry of the list."""
+    before, star, after = path.partition("[*]")
+    if not star:
+        return [path]
+    entries = get_value(deck, before)
+    if not isinstance(entries, list) or not entries:
+        raise StudyError(f"unknown knob '{path}': '{before}' is no list with entries in the deck.")
+    return [whole for i in range(len(entries)) for whole in expand(deck, f"{before}[{i}]{after}")]
+
+
 def flattened(schemas):
     """The alternatives of JSON schemas, without `anyOf` around them."""
     found = []
@@ -94,6 +106,10 @@ def join_path(keys):
 
 def check_path(deck, schema, path):
     """Is there such a key in a deck like this one? Errors: StudyError with the nearest match."""
+    if "[*]" in path:
+        for whole in expand(deck, path):
+            check_path(deck, schema, whole)
+        return
     keys, schemas, place = split_path(path), [schema], deck
     for at, key in enumerate(keys):
         schemas = flattened(schemas)

@@ -14,6 +14,7 @@ CAPTIONS = {
     "contact.png": "The same close to the contact, at true scale.",
     "pressure.png": "Contact pressure on the slave surfaces.",
     "friction.png": "Tangential traction and its bound (Coulomb: mu times the pressure).",
+    "hysteresis.png": "Tangential force against tangential displacement.",
     "history.png": "Histories over the increments of the run.",
 }
 SPACES = {"plane_strain": "plane strain", "plane_stress": "plane stress", "axisymmetric": "axisymmetric", "solid": "3D"}

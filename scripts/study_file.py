@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from deck_edit import StudyError, check_path, get_value, nearest, read_yaml, set_value, split_path
+from deck_edit import StudyError, check_path, expand, get_value, nearest, read_yaml, set_value, split_path
 from expressions import names_in
 
 PLACES = {"x", "y", "z"}  # names that the closed form of a profile may use besides constants and quantities
@@ -75,7 +75,7 @@ def short_value(value):
 
 def short_name(path):
     """The last key of a path; with the one before it where things of that name are many."""
-    keys = [key for key in split_path(path) if isinstance(key, str)]
+    keys = [key for key in split_path(path.replace("[*]", "")) if isinstance(key, str)]
     if keys[-1] in ("alpha", "order", "tolerance") and keys[-2:-1] != ["mesh"]:
         return " ".join(keys[-2:])
     return keys[-1]
@@ -189,11 +189,11 @@ def read_sweeps(reader, content, deck, schema):
 def vary(reader, deck, schema, sweep, knobs):
     """The deck with these knobs set. Errors: StudyError when one undoes another."""
     varied = copy.deepcopy(deck)
-    for path, value in knobs.items():
-        if path != "ranks":
-            set_value(varied, schema, path, value)
-    for path, value in knobs.items():
-        if path != "ranks" and get_value(varied, path) != value:
+    places = [(path, whole, value) for path, value in knobs.items() if path != "ranks" for whole in expand(deck, path)]
+    for _, whole, value in places:
+        set_value(varied, schema, whole, value)
+    for path, whole, value in places:
+        if get_value(varied, whole) != value:
             others = setting_text({other: item for other, item in knobs.items() if other != path})
             raise reader.fail(f"the sweep '{sweep}' contradicts itself: '{path}' cannot be {short_value(value)} "
                               f"together with {others}.")

@@ -92,10 +92,10 @@ def knob_axis(panel, knob, values):
     numbers = [number(value) for value in values]
     panel.set_xlabel(short_name(knob))
     if None not in numbers:
-        if min(numbers) > 0.0 and max(numbers) > 1.5 * min(numbers):
+        if min(numbers) > 0.0:
             panel.set_xscale("log")
-            panel.set_xticks(numbers, [short_value(value) for value in values], fontsize=7.5)
-            panel.minorticks_off()
+        panel.set_xticks(numbers, [short_value(value) for value in values], fontsize=7.5)
+        panel.minorticks_off()
         return dict(zip(map(repr, values), numbers))
     panel.set_xticks(range(len(values)), [short_value(value).replace("(", "\n(") for value in values], fontsize=7)
     panel.set_xlim(-0.5, len(values) - 0.5)

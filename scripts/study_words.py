@@ -145,14 +145,17 @@ def cheapest_words(study, outcomes, quantity, finest):
         best = min(good, key=lambda outcome: outcome.errors[quantity.name])
         return (f"**{quantity.label}** ({kind}): the reference is zero, so the error is absolute; the smallest is "
                 f"{best.errors[quantity.name]:.2g} with {setting_text(best.variant.knobs)} ({cost_text(best)}).")
-    return f"**{quantity.label}** ({what} {kind}): " + "; ".join(target_words(study, good, quantity)) + "."
+    return f"**{quantity.label}** ({what} {kind}): " + "; ".join(target_words(study, good, quantity, finest)) + "."
 
 
-def target_words(study, good, quantity):
-    """For each target the cheapest setting; targets that the same setting meets together."""
+def target_words(study, good, quantity, finest):
+    """For each target the cheapest setting; targets that the same setting meets together. What a reference is itself
+    uncertain by is no error that can be told."""
     errors, costs = [outcome.errors[quantity.name] for outcome in good], [median(outcome.cpu) for outcome in good]
+    found = finest.get(quantity.name)
+    floor = found["uncertainty"] / abs(found["value"]) if found and found["value"] and not quantity.scale else 0.0
     winners = {}
-    for target in TARGETS:
+    for target in (target for target in TARGETS if target >= floor):
         winners.setdefault(cheapest(costs, errors, target), []).append(target)
     for i, targets in winners.items():
         *before, last = map(percent, targets)
@@ -167,6 +170,8 @@ def target_words(study, good, quantity):
                    f"and is off by {percent(worse.errors[quantity.name])}") if worse else ""
         yield (f"{goal} cost{'s' * (len(targets) == 1)} least with {setting_text(good[i].variant.knobs)} "
                f"({percent(errors[i])}, {cost_text(good[i])}){warning}")
+    if floor > TARGETS[-1]:
+        yield f"errors below {percent(floor)} cannot be told with this reference"
 
 
 def dearer_and_worse(study, outcomes, chosen, quantity, target):

@@ -154,6 +154,14 @@ class Paths(unittest.TestCase):
         deck_edit.set_value(deck, SCHEMA, "mesh.parameters.h", 0.2)
         self.assertEqual(deck["mesh"], {"order": 1, "parameters": {"h": 0.2}})
 
+    def test_all_entries(self):
+        deck = {"contact": [{"name": "a"}, {"name": "b", "enforce": "semismooth"}]}
+        varied = study_file.vary(None, deck, SCHEMA, "a", {"contact[*].enforce": {"penalty": {}}})
+        self.assertEqual([pair["enforce"] for pair in varied["contact"]], [{"penalty": {}}] * 2)
+        self.assertEqual(study_file.short_name("contact[*].enforce"), "enforce")
+        with self.assertRaisesRegex(deck_edit.StudyError, "no list with entries"):
+            deck_edit.check_path(DECK, SCHEMA, "mesh[*].order")
+
     def test_unknown_knobs_and_their_nearest(self):
         for path, words in (("mesh.ordr", "no 'ordr' in 'mesh'. Did you mean 'order'"), ("mehs.order", "Did you mean 'mesh'"),
                             ("h", "Did you mean 'mesh.parameters.h'"), ("contact[1].name", "has 1 entry"),
@@ -233,6 +241,22 @@ class Words(unittest.TestCase):
         outcomes[0].errors["q"] = 1e-4  # the error goes through zero here
         words = study_words.paragraph(study, outcomes, [], {})
         self.assertIn("by chance or at a price: h 0.2", words)
+
+    def test_uncertain_reference(self):
+        study, variants = read("quantities: {q: {summary: a, reference: {finest: size}}}\n"
+                               "sweeps: {size: {mesh.parameters.h: [0.4, 0.2, 0.1]}}")
+        outcomes = self.outcomes(study, variants)
+        for outcome in outcomes:
+            outcome.values["q"] += 1.0  # 1 + 0.99 h^2
+        finest = study_results.compare_with_finest(study, outcomes)
+        self.assertAlmostEqual(finest["q"]["value"], 1.0, 9)
+        self.assertAlmostEqual(finest["q"]["order"], 2.0, 9)
+        self.assertAlmostEqual(outcomes[1].errors["q"], 0.99 * 0.04, 9)
+        words = study_words.paragraph(study, outcomes, [], finest)
+        self.assertIn("5 % costs least with h 0.2 (4 %", words)
+        self.assertIn("1 % costs least with h 0.1", words)
+        self.assertIn("errors below 0.99 % cannot be told with this reference", words)
+        self.assertNotIn("0.1 %", words)
 
     def test_reference_of_zero(self):
         study, variants = read("quantities: {q: {summary: a, reference: {exact: 0}}}\n"
