@@ -144,7 +144,7 @@ void Ledger::accept(Vec unknowns) {
   add_bubble_work(unknowns, here);
   MPI_Allreduce(MPI_IN_PLACE, here, 5, MPI_DOUBLE, MPI_SUM, problem.comm());
   double contact_work = 0.0; // ∫ σ (g − g0)
-  double friction_error = 0.0;
+  double contact_error = 0.0;
   const auto state = scene_.problem->state_at(unknowns);
   for (std::size_t i = 0; i < scene_.contacts.size(); ++i) {
     auto& contact = *scene_.contacts[i];
@@ -153,7 +153,7 @@ void Ledger::accept(Vec unknowns) {
     if (!is_rigid && !contact.tangential()) continue;
     const auto totals = contact.totals(state);
     dissipated_[i] += totals.dissipation;
-    friction_error += totals.path_error;
+    contact_error += totals.path_error + std::abs(totals.turning);
     if (!is_rigid) continue;
     const auto& force = totals.force;
     const auto shift = contact.rigid_shift();
@@ -170,7 +170,7 @@ void Ledger::accept(Vec unknowns) {
     external_work_ = stored_energy_ + dissipated_energy();
   else {
     external_work_ += here[0];
-    work_uncertainty_ += friction_error + trapezoid_error(unknowns, here[1], here[2]);
+    work_uncertainty_ += contact_error + trapezoid_error(unknowns, here[1], here[2]);
   }
   opened_ = true;
   const double bulk_energy = scene_.bulk_energy(unknowns);

@@ -155,6 +155,9 @@ void restore_state(Scene& scene, Ledger& ledger, const Checkpoint& checkpoint, V
   for (auto* contact : scene.contacts)
     restore_pair(scene, *contact, checkpoint, unknowns);
   scene.problem->resume(checkpoint.time, checkpoint.global.at("largest_force").at(0));
+  const auto state = scene.problem->state_at(unknowns);
+  for (auto* contact : scene.contacts)
+    contact->remember(state);
   ledger.restore(checkpoint, unknowns);
 }
 

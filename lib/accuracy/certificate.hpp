@@ -27,7 +27,8 @@ struct CertificateTolerances {
 
 /// Energies over all ranks, the same on every rank. All cumulative since the start of the run.
 struct EnergyLedger {
-  /// Σ potential of all forms: strain energy of the bodies and the potential (σ² − λ²) / (2 ε) of the contact.
+  /// Σ potential of all forms: strain energy of the bodies and the potential (σ² − λ²) / (2 ε) of the contact, normal
+  /// and tangential.
   double stored = 0.0;
   /// Frictional dissipation: Σ over increments of ∫ shear traction · slip.
   double dissipated = 0.0;
@@ -40,10 +41,11 @@ struct EnergyLedger {
   /// σ normal traction, t shear traction, g gap and g_t tangential motion of a point. The contact potential ψ(g, λ) is
   /// convex in g, and where there are multipliers they make it largest, so Σ σ_old Δg <= Δψ <= Σ σ Δg and
   ///   |Σ ½ (σ_old + σ) Δg − Δψ| <= Σ ½ Δσ Δg = ½ Δf · Δu − strain energy(Δu) − Σ ½ Δt · Δg_t.
-  /// So it is the sum over increments of ½ Δf · Δu − strain energy(Δu), plus at each slave point with friction
-  /// |½ (t_old + t) · Δg_t − t · slip − Δ spring energy| + ½ |Δt · Δg_t|. It falls with the increments; the energy item
-  /// of the certificate holds what remains beyond it to the tolerance. Where a body is not linear elastic the first
-  /// part is Σ ½ |Δf · Δu| over the equations.
+  /// So it is the sum over increments of ½ Δf · Δu − strain energy(Δu), plus for each pair with friction
+  /// |Σ ½ (t_old + t) · Δg_t − t · slip − Δ tangential potential| + Σ ½ |Δt · Δg_t|, and for each curved rigid master
+  /// what its turning normal takes (ContactForm::turning_work). But for the last it falls with the increments; the
+  /// energy item of the certificate holds what remains beyond it to the tolerance. Where a body is not linear elastic
+  /// the first part is Σ ½ |Δf · Δu| over the equations.
   double work_uncertainty = 0.0;
   /// f · u + Σ over slave points of pressure · n · (u_slave − u_master) − 2 · (strain energy), now: zero for linear
   /// elastic bodies in equilibrium. And the sum of the absolute values of the terms.

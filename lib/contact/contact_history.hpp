@@ -24,11 +24,18 @@ struct PointHistory {
   static PointHistory from_row(std::span<const double> row);
 };
 
+/// The normal part at a point over a curved rigid master, whose normal turns as it moves.
+struct NormalHistory {
+  double sigma = 0.0, gap = 0.0;
+  std::array<double, 3> normal{}, jump{}; // jump: u_slave − rigid shift
+};
+
 struct ContactHistory {
   double time = 0.0;
   std::vector<double> multipliers;                         // at ContactForm::nodes(), stress
   std::vector<std::vector<double>> tangential_multipliers; // [component][node], stress; empty without friction
   std::vector<PointHistory> points;                        // of this rank; empty without friction
+  std::vector<NormalHistory> normals;                      // of this rank; empty without a curved rigid master
 };
 
 } // namespace amontons

@@ -24,7 +24,8 @@ struct ContactTotals {
   std::array<double, 3> tangential_force{}; // on the slave; part of `force`
   double stick_area = 0.0, slip_area = 0.0, open_area = 0.0;
   double dissipation = 0.0; // in the increment since the last accepted state
-  double path_error = 0.0;  // of the shear's energy in that increment (TangentialPart::sums)
+  double turning = 0.0;     // see ContactForm::turning_work
+  double path_error = 0.0;  // of the shear's work in that increment: |mismatch| + change of TangentialSums
 };
 
 class PairReport {
@@ -46,6 +47,8 @@ class PairReport {
   /// What the pair remembers of the last accepted state, and taking that up again.
   virtual ContactHistory accepted() const = 0;
   virtual void restore(const ContactHistory& history) = 0;
+  /// What of an accepted state follows from its unknowns and need not be in a checkpoint. Collective.
+  virtual void remember(const State&) {}
   /// Absent without friction.
   virtual const TangentialPart* tangential() const { return nullptr; }
 

@@ -77,7 +77,7 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
   contexts_.resize(n);
   responses_.resize(n);
   jump_.resize(n);
-  increment_.resize(n);
+  motion_.resize(n);
   active_.assign(n, 0);
   pressed_.assign(n, 0);
   assembled_status_.assign(n, unknown_status);
@@ -148,21 +148,20 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
     active_[i] = active[i];
     contexts_[i] = {.dt = std::max(0.0, state.time - accepted_time_), .factor = factor_[i], .new_contact = old.open};
     jump_[i] = points_.displacement_jump(point, state);
-    std::array<double, 3> moved{}, trial{};
+    std::array<double, 3> trial{};
     for (int c = 0; c < 3; ++c) {
       jump_[i][c] -= shift[c];
-      moved[c] = jump_[i][c] - old.jump[c];
+      motion_[i][c] = jump_[i][c] - old.jump[c];
     }
     if (!active[i]) {
       responses_[i] = {};
-      increment_[i] = tangential(moved, point.normal);
       pressed_[i] = 0;
       continue;
     }
-    increment_[i] = tangential(moved, point.normal);
     const auto held = tangential(carried(i), point.normal);
+    const auto increment = tangential(motion_[i], point.normal);
     for (int c = 0; c < 3; ++c)
-      trial[c] = held[c] + point.epsilon * increment_[i][c];
+      trial[c] = held[c] + point.epsilon * increment[c];
     pressed_[i] = sigma[i] < 0.0;
     responses_[i] =
         return_map(pair_.friction->law, contexts_[i], trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
@@ -368,22 +367,33 @@ std::vector<std::vector<double>> TangentialPart::multiplier_defect() const {
 
 // --- energy and reports ----------------------------------------------------------------------------------------------
 
-/// Elastic energy per area that a penalty spring under this traction holds.
-double TangentialPart::spring_energy(const TangentVector& traction, double epsilon) const {
-  return has_multipliers() ? 0.0 : dot(traction, traction) / (2.0 * epsilon);
+/// Potential of a point, lumped as the multipliers are: (|σ_t|² − Σ N_i |λ_i|²) / (2 ε). With σ_t − P λ_t = ε g_e,
+///   dψ = σ_t · dg_e + Σ N_i (σ_t − λ_i) · dλ_i / ε,
+/// the last part of which is zero in the sum over the surface: what sticking points move is elastic.
+double TangentialPart::spring_energy(std::size_t i, const TangentVector& traction,
+                                     const std::vector<std::vector<double>>& multipliers) const {
+  const auto& point = points_.points()[i];
+  double square = dot(traction, traction);
+  if (has_multipliers()) {
+    const auto nodes = points_.slave().facet(point.facet);
+    const auto shape = points_.multiplier_shape(point);
+    for (std::size_t a = 0; a < shape.size(); ++a)
+      for (const auto& component : multipliers)
+        square -= shape[a] * std::pow(component[position_[nodes[a]]], 2);
+  }
+  return square / (2.0 * point.epsilon);
 }
 
 double TangentialPart::stored_energy() const {
   double energy = 0.0;
   const auto& points = points_.points();
   for (std::size_t i = 0; i < points.size(); ++i)
-    energy += points[i].weight * spring_energy(responses_[i].traction, points[i].epsilon);
+    energy += points[i].weight * spring_energy(i, responses_[i].traction, multipliers_);
   return energy;
 }
 
-/// path_error: the trapezoidal work of the shear traction over the increment against what the end of the increment
-/// says, dissipation and stored energy, plus half the work of the change of traction: how far book-keeping by the ends
-/// of increments can be off at the interface.
+/// mismatch: the trapezoidal work of the shear traction over the increment, less what the end of the increment says,
+/// dissipation and stored energy: what book-keeping by the ends of increments is off at the interface.
 TangentialSums TangentialPart::sums() const {
   TangentialSums sums;
   const auto& points = points_.points();
@@ -398,11 +408,11 @@ TangentialSums TangentialPart::sums() const {
     sums.dissipation += weight * dissipation;
     for (int c = 0; c < 3; ++c)
       sums.work += weight * now.traction[c] * (jump_[i][c] + shift[c]);
-    const double trapezoid = 0.5 * (dot(now.traction, increment_[i]) + dot(old.traction, increment_[i]));
-    const double change = 0.5 * (dot(now.traction, increment_[i]) - dot(old.traction, increment_[i]));
+    const double at_end = dot(now.traction, motion_[i]), at_start = dot(old.traction, motion_[i]);
     const double stored =
-        spring_energy(now.traction, points[i].epsilon) - spring_energy(old.traction, points[i].epsilon);
-    sums.path_error += weight * (std::abs(trapezoid - dissipation - stored) + std::abs(change));
+        spring_energy(i, now.traction, multipliers_) - spring_energy(i, old.traction, multipliers_old_);
+    sums.mismatch += weight * (0.5 * (at_end + at_start) - dissipation - stored);
+    sums.change += weight * 0.5 * std::abs(at_end - at_start);
   }
   return sums;
 }

@@ -25,7 +25,8 @@ struct TangentialSums {
   double stick_area = 0.0, slip_area = 0.0;
   double dissipation = 0.0; // ∫ σ_t · slip over the increment, >= 0
   double work = 0.0;        // ∫ σ_t · (u_slave − u_master), a rigid master's motion not included
-  double path_error = 0.0;  // see TangentialPart::sums
+  double mismatch = 0.0;    // see TangentialPart::sums
+  double change = 0.0;      // Σ ½ |Δσ_t · Δg_t|
 };
 
 class TangentialPart {
@@ -66,7 +67,7 @@ class TangentialPart {
   std::vector<std::vector<double>> multiplier_defect() const;
 
   TangentialSums sums() const;
-  /// Potential (elastic energy of the penalty springs) on this rank; zero with multipliers.
+  /// Potential (|σ_t|² − |λ_t|²) / (2 ε) on this rank, of penalty springs |σ_t|² / (2 ε), at the last evaluation.
   double stored_energy() const;
   /// Fills in what friction adds to the samples of the pair's points.
   void sample(ContactSamples& samples) const;
@@ -80,7 +81,8 @@ class TangentialPart {
   void jump_variation(const ContactPoint& point, const ContactBlock& layout, std::span<double> motion) const;
   void trial_tangent(std::size_t i, const ContactBlock& layout, bool guess_stick, std::span<const double> motion,
                      std::span<double> response) const;
-  double spring_energy(const TangentVector& traction, double epsilon) const;
+  double spring_energy(std::size_t i, const TangentVector& traction,
+                       const std::vector<std::vector<double>>& multipliers) const;
 
   const DofLayout& layout_;
   const ContactPair& pair_;
@@ -95,8 +97,8 @@ class TangentialPart {
   // At the last evaluation, per point:
   std::vector<FrictionContext> contexts_;
   std::vector<FrictionResponse> responses_;
-  std::vector<std::array<double, 3>> jump_; // u_slave − u_master − rigid shift
-  std::vector<TangentVector> increment_;    // Δg_t
+  std::vector<std::array<double, 3>> jump_;   // u_slave − u_master − rigid shift
+  std::vector<std::array<double, 3>> motion_; // jump less that of the last accepted state
   std::vector<std::uint8_t> active_, pressed_, assembled_status_;
   VecHandle local_multipliers_;
   ScatterHandle multiplier_scatter_;

@@ -20,7 +20,7 @@ BLOCKS = {
         {"on": "lower_bottom", "displacement": {"x": 0, "y": 0, "z": 0}},
         {
             "on": "upper_top",
-            "displacement": {"x": "0.0065*max(t-1,0)", "y": "0.003*max(t-1.4,0)", "z": "-0.01*min(t,1)"},
+            "displacement": {"x": "0.0094*max(t-1,0)", "y": "0.003*max(t-1.4,0)", "z": "-0.01*min(t,1)"},
         },
     ],
     "contact.0.integration": {"facet": {"order": 4}},
