@@ -227,12 +227,28 @@ def press_shear_path(bench):
         bench.below(f"{name}: distance of 1/30 over that of 1/10", errors[2] / errors[1], 0.31)
 
 
+def press_shear_path_control(bench):
+    """A path tolerance for each step is kept, against the fine path, in fewer increments than that has; and the run's own
+    estimate is not below its distance."""
+    fine = press_and_shift(bench, 100, 100)
+    for tolerance in (0.05, 0.02):
+        auto = {"auto": {"first": 0.1, "path_tolerance": tolerance}}
+        results = press_and_shift(bench, auto, auto)
+        distances = [path_distance(results, fine, time) for time in (1.0, 2.0)]
+        said = results.summary["path"]["estimated_error"]
+        print(f"     tolerance {tolerance}: {results.summary['increments']} increments, distance {distances[0]:.2e} pressed, "
+              f"{distances[1]:.2e} shifted, the run says {said:.2e}")
+        bench.below(f"tolerance {tolerance}: distance from the fine path / tolerance", max(distances) / tolerance, 1.0)
+        bench.below(f"tolerance {tolerance}: distance from the fine path / what the run says", max(distances) / said, 1.0)
+        bench.below(f"tolerance {tolerance}: increments", results.summary["increments"], 150)
+
+
 CASES = {
     "cattaneo_mindlin_2d": {"reference": cattaneo_mindlin, "convergence": cattaneo_mindlin_convergence, "held": cattaneo_mindlin_held},
     "mindlin_sphere_cycling": {
         "reference": mindlin_cycling,
         "fine": lambda bench: mindlin_cycling(bench, {"mesh.parameters.n": 8}, 0.03),
     },
-    "cylinder_press_shear_path": {"reference": press_shear_path},
+    "cylinder_press_shear_path": {"reference": press_shear_path, "path_control": press_shear_path_control},
     "stack_with_friction_3d": {"reference": stack, "ranks": stack_ranks},
 }
