@@ -316,11 +316,17 @@ void TangentialPart::remember_tangent(bool guess_stick) {
 
 // --- history and multipliers -----------------------------------------------------------------------------------------
 
+/// The anchor, carried along by the slip s n of this increment: from q = P λ + ε Δg_t and σ_t = q − ε s n it is the
+/// jump less (σ_t − P λ) / ε, which holds where the limit is zero, too, and a slip has no traction to show its
+/// direction.
 std::array<double, 3> TangentialPart::anchor_after(std::size_t i) const {
   if (!active_[i] || !has_multipliers()) return jump_[i];
-  const auto slip = slip_vector(responses_[i]);
-  const auto& old = history_[i].anchor;
-  return {old[0] + slip[0], old[1] + slip[1], old[2] + slip[2]};
+  const auto& point = points_.points()[i];
+  const auto held = tangential(multiplier_at(point), point.normal);
+  auto anchor = jump_[i];
+  for (int c = 0; c < 3; ++c)
+    anchor[c] -= (responses_[i].traction[c] - held[c]) / point.epsilon;
+  return anchor;
 }
 
 void TangentialPart::commit(const State& state) {
