@@ -24,6 +24,7 @@ struct Scene {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Space space = Space::PlaneStrain;
   Integration integration = FacetIntegration{};
+  std::optional<Expression> factor = std::nullopt;
 };
 
 /// Two blocks with nothing but a frictional pair between them, and displacements by formula.
@@ -59,7 +60,7 @@ struct Fixture {
                      .stiffness = {100.0, 300.0}};
     pair.alpha = 3.0;
     pair.search_distance = 0.5;
-    pair.friction = Friction{.law = scene.law, .factor = std::nullopt, .field = unknown ? 1 : -1};
+    pair.friction = Friction{.law = scene.law, .factor = scene.factor, .field = unknown ? 1 : -1};
     auto contact = std::make_unique<ContactForm>(*layout, std::move(pair));
     form = contact.get();
     std::vector<std::unique_ptr<Form>> forms;
@@ -381,6 +382,27 @@ TEST_CASE("with multipliers, increments without motion leave tractions as they a
       }
     CHECK(change <= 1e-12 * largest);
     fixture.problem->commit(fixture.u);
+  }
+}
+
+TEST_CASE("motion before friction begins leaves no shear behind") {
+  for (const Enforcement& enforcement : {Enforcement(Penalty{}), Enforcement(Uzawa{})}) {
+    const std::map<std::string, double> none;
+    Fixture fixture({.enforcement = enforcement, .factor = Expression("t > 1 ? 1 : 0", none)});
+    const std::size_t nodes = fixture.form->nodes().nodes.size();
+    fixture.form->tangential()->hold_multipliers({2, std::vector<double>(nodes, 0.0)});
+    fixture.set(fixture.u, 0.02, 0.01, 1.0, 0.0);
+    fixture.problem->begin_increment(0.5, fixture.u);
+    fixture.problem->commit(fixture.u);
+    fixture.set(fixture.u, 0.04, 0.01, 1.0, 0.0);
+    fixture.problem->begin_increment(1.0, fixture.u);
+    fixture.problem->commit(fixture.u);
+    fixture.problem->begin_increment(1.5, fixture.u);
+    const auto still = fixture.form->totals(fixture.problem->state_at(fixture.u));
+    CHECK(still.area > 0.1);
+    CHECK(std::abs(still.tangential_force[0]) < 1e-12 * still.force[1]);
+    fixture.set(fixture.u, 0.041, 0.01, 1.0, 0.0);
+    CHECK(fixture.form->totals(fixture.problem->state_at(fixture.u)).tangential_force[0] < -1e-3 * still.force[1]);
   }
 }
 
