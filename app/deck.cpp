@@ -245,7 +245,7 @@ ObjectRule<CertificateDeck> certificate_rule() {
       .optional(
           "slip", &CertificateDeck::slip, tolerance(),
           "Tangential motion of the surfaces that is not the slip claimed, weighted by the shear traction / largest "
-          "displacement increment on the surfaces.")
+          "displacement increment in the scene.")
       .optional("volume_ratio", &CertificateDeck::volume_ratio, number("1", Range::between(0, 0.99)),
                 "Smallest volume ratio det F allowed.");
   return rule;

@@ -22,7 +22,7 @@ struct CertificateTolerances {
   double energy = 1e-6;          // violation of the energy bounds / energy scale
   double volume_ratio = 0.0;     // smallest det(I + ∇u) / reference volume
   double friction = 1e-6;        // shear off the law's limit, and negative frictional work, relative (see certify)
-  double slip = 0.05; // tangential motion that is not the slip claimed / motion of the surfaces (see certify)
+  double slip = 0.05;            // tangential motion that is not the slip claimed / largest motion (see certify)
 };
 
 /// Energies over all ranks, the same on every rank. All cumulative since the start of the run.
@@ -88,7 +88,7 @@ struct Certificate {
 
 /// friction_cone: the pair's law is asked anew for its limit at the pressure and slip claimed; shear beyond it (in
 /// slip: off it), shear out of the tangent plane and shear without contact, relative to the pair's largest limit or
-/// shear. slip: Σ |shear| |Δg_t − slip| over Σ |shear| times the largest displacement increment on the surfaces, with
+/// shear. slip: Σ |shear| |Δg_t − slip| over Σ |shear| times the largest displacement increment in the scene, with
 /// Δg_t the tangential motion in this increment that a fresh search finds: what is said to stick must not move and what
 /// is said to slip must have moved so. A penalty's elastic slip shows here as its penetration does in `penetration`.
 /// dissipation: negative work of shear on slip, relative to Σ |shear| slip.

@@ -1,4 +1,6 @@
 """Friction through a restart: the second half of a run, on any number of ranks, against the run in one piece."""
+from pathlib import Path
+
 import numpy as np
 
 from harness import TOP, Results, load_deck, set_key
@@ -32,20 +34,20 @@ RATE_AND_STATE = {"rate_and_state": {"mu": 0.3, "a": 0.02, "b": 0.03, "L": 0.002
 
 # name: scene, its changes, more changes, ranks to go on with
 VARIANTS = {
-    "cylinder, semismooth": ("cattaneo_mindlin_2d", CYLINDER, {}, (1, 2, 3)),
+    "cylinder, semismooth": ("pressed_cylinder", CYLINDER, {}, (1, 2, 3)),
     "cylinder, uzawa": (
-        "cattaneo_mindlin_2d",
+        "pressed_cylinder",
         CYLINDER,
         {"contact.0.enforce": {"uzawa": {"tolerance": 1e-12, "alpha": 5}}},
         (3,),
     ),
     "cylinder, penalty": (
-        "cattaneo_mindlin_2d",
+        "pressed_cylinder",
         CYLINDER,
         {"contact.0.enforce": {"penalty": {}}, "certificate.penetration": 0.5, "certificate.complementarity": 0.5},
         (1,),
     ),
-    "cylinder, rate and state": ("cattaneo_mindlin_2d", CYLINDER, {"contact.0.friction": RATE_AND_STATE}, (1, 3)),
+    "cylinder, rate and state": ("pressed_cylinder", CYLINDER, {"contact.0.friction": RATE_AND_STATE}, (1, 3)),
     "hexahedra": ("patch_3d", BLOCKS, {}, (1, 2, 3)),
     "tetrahedra": ("patch_3d", BLOCKS, {"mesh.parameters.hexes": 0}, (3,)),
 }
@@ -53,8 +55,9 @@ VARIANTS = {
 
 def variant_deck(case, name, steps, file_name):
     scene, changes, more, _ = VARIANTS[name]
-    deck = load_deck(scene)
-    deck["mesh"]["file"] = str((TOP / "inputs" / scene / deck["mesh"]["file"]).resolve())
+    scenes = TOP / "inputs" if (TOP / "inputs" / scene).is_dir() else Path(__file__).parent
+    deck = load_deck(scene, scenes)
+    deck["mesh"]["file"] = str((scenes / scene / deck["mesh"]["file"]).resolve())
     for path, value in {**changes, **more, "steps": steps}.items():
         set_key(deck, path, value)
     return deck, case.write(deck, file_name)
