@@ -61,14 +61,21 @@ void check_dissipation(const CertificateInput& input, std::size_t pair, Worst& w
   if (works[0] > 0.0) worst.offer(works[0] / works[1], [&] { return "pair '" + input.pairs[pair].name + "'"; });
 }
 
-/// The largest displacement increment in the scene, rigid masters included. Collective.
+/// Part of the largest displacement below which an increment of it is rounding.
+constexpr double rest = 1e-6;
+
+/// The largest displacement increment in the scene, rigid masters included; in a scene at rest a little. Collective.
 double largest_increment(const CertificateInput& input) {
   double largest = 0.0;
-  for (std::int32_t node = 0; node < input.mesh.num_local(); ++node) {
-    Vector moved{};
-    std::copy_n(input.increment.begin() + std::ptrdiff_t(node) * input.mesh.dim, input.mesh.dim, moved.begin());
-    largest = std::max(largest, norm(moved));
-  }
+  const auto include = [&](std::span<const double> displacement, double factor) {
+    for (std::size_t node = 0; node < displacement.size(); node += input.mesh.dim) {
+      Vector moved{};
+      std::copy_n(displacement.begin() + static_cast<std::ptrdiff_t>(node), input.mesh.dim, moved.begin());
+      largest = std::max(largest, factor * norm(moved));
+    }
+  };
+  include(input.increment, 1.0);
+  include(input.displacement, rest);
   for (const auto& pair : input.pairs)
     if (const auto* rigid = std::get_if<MovedShape>(&pair.master)) largest = std::max(largest, norm(rigid->increment));
   MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, input.mesh.comm);
