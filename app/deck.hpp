@@ -124,7 +124,7 @@ struct CertificateDeck {
   double balance = 1e-6;         // force and moment out of balance / force scale
   double energy = 1e-6;          // violation of the energy bounds / external work
   double friction = 1e-6;        // shear off the law's limit / largest limit; negative part of the frictional work
-  double slip = 0.05;            // motion that is not the slip claimed / largest motion in the scene
+  double slip = 0.1;             // motion that is not the slip claimed / largest motion in the scene
   double volume_ratio = 0.0;     // smallest det F allowed
 };
 

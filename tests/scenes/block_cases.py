@@ -18,8 +18,9 @@ def friction_coefficient(history, pair):
 # --- block_on_incline -------------------------------------------------------------------------------------------------
 
 
-def check_incline(bench, name, results, weight, tether):
-    """Balance and friction at every angle; `tether`: its stiffness. Forces are on the block, x downhill, y out of the incline."""
+def check_incline(bench, name, results, weight, tether, first=0):
+    """Balance and friction at every angle; `tether`: its stiffness. Forces are on the block, x downhill, y out of the
+    incline. Friction is judged from sliding increment number `first` on."""
     mu, history = 0.5, results.history
     tilted = history["time"] > 1.0
     angle = np.radians(40.0 * (history["time"][tilted] - 1.0))
@@ -34,7 +35,7 @@ def check_incline(bench, name, results, weight, tether):
     steep = np.tan(angle) > mu
     bench.below(
         f"{name}: friction / W cos - mu above atan mu",
-        np.abs(-friction / (weight * np.cos(angle)) - mu)[steep].max(), 1e-6,
+        np.abs(-friction / (weight * np.cos(angle)) - mu)[steep][first:].max(), 1e-6,
     )
     bench.below(f"{name}: sticking part of the contact above atan mu", (stick / total)[steep].max(), 0.0)
     bench.below(f"{name}: sticking part below it (negative)", -(stick / total)[~steep].min(), -0.05)
@@ -75,7 +76,9 @@ def incline_solid(bench):
             "steps.1.increments": 16,
         },
     )
-    check_incline(bench, "3D", results, 2000.0 * 9.81 * 0.2 * 0.1 * depth, 0.2e6 * 0.1 * depth)
+    # At rest the block has spread across the incline, too, and that shear turns downhill in the first sliding increment:
+    # there the resultant is 3e-6 short of mu N, while at every point |shear| = mu p.
+    check_incline(bench, "3D", results, 2000.0 * 9.81 * 0.2 * 0.1 * depth, 0.2e6 * 0.1 * depth, first=1)
     points = results.points["incline"]
     shear = np.linalg.norm(points["shear"], axis=1)
     bench.below(
