@@ -103,6 +103,7 @@ void describe_effects(std::ostream& out, const Deck& deck) {
     out << "  contact  " << contact.name.value << ": " << contact.slave.value << " on "
         << (master ? master->value : "a rigid shape") << ", " << enforce_name(contact.enforce) << "\n";
   }
+  if (!deck.contact.empty()) out << "  enforce  " << enforce_advice() << "\n";
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "deck/rule.hpp"
 #include "deck_checks.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -127,7 +128,8 @@ TaggedRule<EnforceDeck> enforce_rule() {
   ObjectRule<PenaltyDeck> penalty;
   penalty.optional(
       "alpha", &PenaltyDeck::alpha, number("1", Range::above(0)),
-      "Penalty stiffness in units of (tangent modulus / facet size); larger: less penetration, harder to solve.");
+      "Penalty stiffness in units of (tangent modulus / facet size); larger: less penetration, but rougher pressure on "
+      "coarse meshes and more iterations.");
   TaggedRule<EnforceDeck> rule;
   rule.tag("semismooth", semismooth, "Nodal multipliers solved together with the displacements by one Newton method.",
            "P. Alart, A. Curnier, Comput. Methods Appl. Mech. Engrg. 92 (1991) 353-375.")
@@ -143,12 +145,6 @@ TaggedRule<EnforceDeck> enforce_rule() {
            "B. I. Wohlmuth, R. Krause, SIAM J. Sci. Comput. 25 (2003) 324-347.");
   return rule;
 }
-
-const std::string enforce_meaning =
-    "How the contact conditions are enforced. Take semismooth unless the problem is large: it is exact, converges "
-    "quadratically and knows friction, but its saddle point needs a direct solver. For more than some 300,000 unknowns "
-    "in 3D take vi when there is no friction (symmetric positive definite, multigrid, converges from any guess), uzawa "
-    "when there is; penalty is for quick looks.";
 
 ObjectRule<ContactDeck> contact_rule() {
   TaggedRule<decltype(ContactDeck::projection)> projection;
@@ -177,7 +173,8 @@ ObjectRule<ContactDeck> contact_rule() {
       .required("slave", &ContactDeck::slave, text(group_meaning),
                 "The surface that carries quadrature points and multipliers; take the finer or the softer one.")
       .required("master", &ContactDeck::master, master_rule(), "The surface projected onto, or a rigid shape.")
-      .optional("enforce", &ContactDeck::enforce, enforce_rule(), enforce_meaning)
+      .optional("enforce", &ContactDeck::enforce, enforce_rule(),
+                "How the contact conditions are enforced. " + enforce_advice())
       .optional("projection", &ContactDeck::projection, projection, "How a slave point finds its master point.")
       .optional("integration", &ContactDeck::integration, integration, "How the slave surface is integrated over.")
       .optional(
@@ -211,7 +208,11 @@ ObjectRule<StepDeck> step_rule() {
       .optional("largest", &AutoIncrements::largest, fraction(), "Largest increment as a fraction of the step.")
       .optional("target_iterations", &AutoIncrements::target_iterations, integer(Range::at_least(1)),
                 "Newton iterations at which the increment is kept; fewer make it grow, more make it shrink.")
-      .not_yet("path_tolerance", "Bound the increments with `largest` instead.")
+      .optional("path_tolerance", &AutoIncrements::path_tolerance, number("1", Range::above_up_to(0, 0.5)),
+                "Each increment is solved whole and in two halves, which are kept. How far they differ (displacement, "
+                "contact pressure and shear, relative to the largest so far), summed over the step, stays below this "
+                "number; the part of the contact area with another status, in each increment.",
+                "E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.4.")
       .check([](const DeckNode& node, const AutoIncrements& value, Reading& reading) {
         if (value.smallest > value.first || value.first > value.largest)
           reading.fail(node.place, node.path + " must have smallest <= first <= largest, but has " +
@@ -219,7 +220,8 @@ ObjectRule<StepDeck> step_rule() {
                                        number_text(value.largest) + ".");
       });
   TaggedRule<IncrementsDeck> increments;
-  increments.bare(integer(Range::at_least(1))).tag("auto", automatic, "Increments chosen by Newton's effort.");
+  increments.bare(integer(Range::at_least(1)))
+      .tag("auto", automatic, "Increments chosen by Newton's effort, and by the path error where it has a tolerance.");
   ObjectRule<StepDeck> rule;
   rule.required("name", &StepDeck::name, identifier("name of the step in the results"), "Names the step.")
       .required("to", &StepDeck::to, number("time", Range::above(0)),
@@ -243,7 +245,7 @@ ObjectRule<CertificateDeck> certificate_rule() {
       .optional(
           "slip", &CertificateDeck::slip, tolerance(),
           "Tangential motion of the surfaces that is not the slip claimed, weighted by the shear traction / largest "
-          "displacement increment on the surfaces.")
+          "displacement increment in the scene.")
       .optional("volume_ratio", &CertificateDeck::volume_ratio, number("1", Range::between(0, 0.99)),
                 "Smallest volume ratio det F allowed.");
   return rule;
@@ -296,6 +298,9 @@ Rule<Deck> deck_rule() {
       .optional("contact", &Deck::contact, list_of(Rule<ContactDeck>(contact_rule())),
                 "Pairs of surfaces that may touch.")
       .required("steps", &Deck::steps, list_of(Rule<StepDeck>(step_rule()), 1), "The course of the run in time t.")
+      .optional("estimate_path_error", &Deck::estimate_path_error, boolean(),
+                "true: every increment is solved in two halves, too, for the estimate of the path error alone; takes "
+                "about three times as long. Steps with a path_tolerance have the estimate anyway.")
       .optional("certificate", &Deck::certificate, certificate_rule(),
                 "Tolerances of the checks that every accepted increment must pass.")
       .optional("output", &Deck::output, output_rule(), "What is written, and where.")
@@ -326,6 +331,21 @@ std::string file_text(const std::string& path) {
 }
 
 } // namespace
+
+bool measures_path(const Deck& deck) {
+  return deck.estimate_path_error || std::any_of(deck.steps.begin(), deck.steps.end(), [](const StepDeck& step) {
+           const auto* automatic = std::get_if<AutoIncrements>(&step.increments);
+           return automatic && automatic->path_tolerance;
+         });
+}
+
+const std::string& enforce_advice() {
+  static const std::string advice =
+      "Take semismooth unless the problem is too large to factorize: it converges quadratically and knows friction, "
+      "but is a saddle point and needs a direct solver. A large problem takes vi without friction (symmetric positive "
+      "definite, so for multigrid; converges from any guess) and uzawa with friction; penalty is for quick looks.";
+  return advice;
+}
 
 const Shape& deck_shape() { return *the_rule().shape; }
 

@@ -105,7 +105,8 @@ struct AutoIncrements {
   double first = 0.1;     // fraction of the step
   double smallest = 1e-4; // fraction of the step below which the run gives up
   double largest = 1.0;
-  int target_iterations = 8; // Newton iterations at which the increment is kept; fewer: grow, more: shrink
+  int target_iterations = 8;            // Newton iterations at which the increment is kept; fewer: grow, more: shrink
+  std::optional<double> path_tolerance; // of the path error of the whole step; absent: not measured
 };
 using IncrementsDeck = std::variant<int, AutoIncrements>;
 
@@ -123,7 +124,7 @@ struct CertificateDeck {
   double balance = 1e-6;         // force and moment out of balance / force scale
   double energy = 1e-6;          // violation of the energy bounds / external work
   double friction = 1e-6;        // shear off the law's limit / largest limit; negative part of the frictional work
-  double slip = 0.05;            // motion that is not the slip claimed / motion of the surfaces
+  double slip = 0.05;            // motion that is not the slip claimed / largest motion in the scene
   double volume_ratio = 0.0;     // smallest det F allowed
 };
 
@@ -148,6 +149,7 @@ struct Deck {
   std::map<std::string, Located<VectorDeck>> body_force;
   std::vector<ContactDeck> contact;
   std::vector<StepDeck> steps;
+  bool estimate_path_error = false;
   CertificateDeck certificate;
   OutputDeck output;
   std::map<std::string, std::string> petsc; // option name without dash -> value
@@ -156,7 +158,13 @@ struct Deck {
   int dim() const { return space_dim(space); }
 };
 
+/// Does any increment of the run need the comparison with its halves?
+bool measures_path(const Deck& deck);
+
 struct Shape;
+
+/// Which formulation of contact to choose and why.
+const std::string& enforce_advice();
 
 /// What a deck may say: for the schema and the manual pages.
 const Shape& deck_shape();

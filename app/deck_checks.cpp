@@ -94,7 +94,7 @@ void check_bodies(const Check& check) {
 void check_space_of_vectors(const Check& check) {
   const auto& [deck, root, reading] = check;
   if (!check.space_is_known() || deck.dim() == 3) return;
-  const auto message = [&deck](const std::string& path) {
+  const auto message = [&deck = deck](const std::string& path) {
     return path + ": there is no z with space: " + space_name(deck) + ". Remove it, or set space: solid.";
   };
   for (std::size_t i = 0; i < deck.boundary.size(); ++i) {

@@ -1,6 +1,7 @@
 // The book-keeping of forces and energies over accepted increments: reactions, external work, its bounds.
 #pragma once
 
+#include "output/checkpoint.hpp"
 #include "scene.hpp"
 
 #include <array>
@@ -28,12 +29,13 @@ class Ledger {
 
   /// ∫ F · du by the trapezoidal rule over the accepted increments: supports, loads and moving rigid masters.
   double external_work() const { return external_work_; }
-  /// Σ ½ |ΔF · Δu|: how far the trapezoidal rule can be off where forces grow monotonically; with friction plus what
-  /// it can be off at the sliding points (TangentialPart::sums).
+  /// How far external_work can be off stored_energy + dissipated_energy for the length of the increments alone; see
+  /// EnergyLedger::work_uncertainty.
   double work_uncertainty() const { return work_uncertainty_; }
   double stored_energy() const { return stored_energy_; }
-  /// Frictional dissipation since the start.
-  double dissipated_energy() const { return dissipated_energy_; }
+  /// Frictional dissipation since the start, of all pairs and of each.
+  double dissipated_energy() const;
+  const std::vector<double>& dissipated_by_pair() const { return dissipated_; }
   /// e · u − ∫ (σ (g − g0) + σ_t · u) − 2 U at the state: zero for a linear elastic body in equilibrium; and its scale
   /// |e · u| + 2 U.
   double virtual_work_defect() const { return virtual_work_defect_; }
@@ -46,19 +48,24 @@ class Ledger {
   /// Displacement of each tied group of the layout, in its direction.
   const std::vector<double>& tied_displacements() const { return tied_displacements_; }
 
-  /// Starts the books from a checkpoint's state; call after a residual at `unknowns`. Collective.
-  void restore(Vec unknowns, double work, double uncertainty);
+  /// Puts the books into a checkpoint. The forces go with them: a restart cannot evaluate them anew, for those of
+  /// friction depend on how the accepted state was reached. Collective.
+  void save(Checkpoint& checkpoint) const;
+  /// Opens the books as a checkpoint left them, with the state that it holds in `unknowns`. Collective.
+  void restore(const Checkpoint& checkpoint, Vec unknowns);
 
  private:
   void find_external_forces(Vec unknowns);
   void add_bubble_work(Vec unknowns, std::span<double> sums);
+  double trapezoid_error(Vec unknowns, double change, double absolute_change);
   void collect_reactions();
   void collect_tied_displacements(Vec unknowns);
 
   Scene& scene_;
   VecHandle external_, external_old_, unknowns_old_, work_;
   std::vector<std::array<double, 3>> rigid_force_old_, rigid_shift_old_;
-  double external_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0, dissipated_energy_ = 0.0;
+  double external_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0;
+  std::vector<double> dissipated_;
   double virtual_work_defect_ = 0.0, virtual_work_scale_ = 0.0;
   LoadedBubbles bubbles_old_;
   bool initial_overlap_ = false, opened_ = false;

@@ -36,11 +36,11 @@ void add_friction_fields(const ContactSamples& sample, PointFields& points) {
   points.fields.push_back({.name = "slip", .components = 3, .values = std::move(slip)});
   points.fields.push_back({.name = "accumulated_slip", .values = sample.accumulated_slip});
   points.fields.push_back({.name = "tau_c", .values = sample.tau_c});
+  for (std::size_t k = 0; k < sample.states.size(); ++k)
+    points.fields.push_back({.name = sample.state_names[k], .values = sample.states[k]});
 }
 
 bool has_rigid_master(const PairReport& contact) { return std::holds_alternative<RigidMaster>(contact.pair().master); }
-
-std::string multiplier_name(const PairReport& contact) { return "multiplier:" + contact.pair().name; }
 
 } // namespace
 
@@ -62,9 +62,12 @@ std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledge
     for (const char* quantity : {"area", "max_pressure", "penetration"})
       columns.push_back(prefix + quantity);
     if (!contact->tangential()) continue;
-    for (const char* quantity : {"stick_area", "slip_area", "dissipation"})
+    for (const char* quantity : {"stick_area", "slip_area", "open_area", "dissipation", "dissipation_total"})
       columns.push_back(prefix + quantity);
+    for (int c = 0; c < d; ++c)
+      columns.push_back(prefix + "shear_" + axes[c]);
   }
+  if (measures_path(scene.deck)) columns.emplace_back("path_error");
   for (const char* quantity : {"energy_stored", "energy_dissipated", "energy_external_work", "newton", "linear",
                                "outer", "residual", "certified"})
     columns.emplace_back(quantity);
@@ -88,8 +91,12 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
     const auto& pair = totals[i];
     row.insert(row.end(), pair.force.begin(), pair.force.begin() + d);
     row.insert(row.end(), {pair.area, pair.max_pressure, pair.largest_penetration});
-    if (scene.contacts[i]->tangential()) row.insert(row.end(), {pair.stick_area, pair.slip_area, pair.dissipation});
+    if (!scene.contacts[i]->tangential()) continue;
+    row.insert(row.end(),
+               {pair.stick_area, pair.slip_area, pair.open_area, pair.dissipation, ledger.dissipated_by_pair()[i]});
+    row.insert(row.end(), pair.tangential_force.begin(), pair.tangential_force.begin() + d);
   }
+  if (measures_path(scene.deck)) row.push_back(report.path_error);
   row.insert(row.end(), {ledger.stored_energy(), ledger.dissipated_energy(), ledger.external_work(),
                          double(report.outcome.newton), double(report.outcome.linear), double(report.outcome.outer),
                          report.outcome.residual, report.certified ? 1.0 : 0.0});
@@ -144,60 +151,6 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
   writer.write(step);
 }
 
-std::string run_identity(const Scene& scene) {
-  std::string identity;
-  for (const auto& [body, material] : scene.deck.bodies)
-    identity += body + "=" + material.value + ";";
-  for (const auto& law : scene.mesh.bodies)
-    identity += law + ";";
-  for (std::size_t b = 0; b < scene.mesh.bodies.size(); ++b)
-    identity += formatted("%.17g;", scene.bulk->law(static_cast<std::int32_t>(b)).stiffness());
-  for (const auto* contact : scene.contacts)
-    identity += contact->pair().name + ":" + contact->pair().slave + ";";
-  return identity;
-}
-
-Checkpoint make_checkpoint(const Scene& scene, const Ledger& ledger, Vec unknowns) {
-  const auto state = scene.problem->state_at(unknowns);
-  Checkpoint checkpoint;
-  checkpoint.time = state.time;
-  checkpoint.nodal["displacement"] = {scene.mesh.dim, {state.displacement.begin(), state.displacement.end()}};
-  for (const auto* contact : scene.contacts) {
-    if (std::holds_alternative<Penalty>(contact->pair().enforcement)) continue;
-    NodalArray multipliers{1, std::vector<double>(scene.mesh.num_local(), 0.0)};
-    for (std::size_t i = 0; i < contact->nodes().nodes.size(); ++i)
-      multipliers.values[contact->nodes().nodes[i]] = contact->multipliers()[i];
-    checkpoint.nodal[multiplier_name(*contact)] = std::move(multipliers);
-  }
-  checkpoint.global["work"] = {ledger.external_work(), ledger.work_uncertainty()};
-  return checkpoint;
-}
-
-void restore_unknowns(Scene& scene, const Checkpoint& checkpoint, Vec unknowns) {
-  const auto& layout = *scene.layout;
-  const int d = layout.dim();
-  const auto& displacement = checkpoint.nodal.at("displacement").values;
-  VecArray values(unknowns);
-  const auto put = [&](PetscInt equation, double value) {
-    const PetscInt local = equation - layout.first_equation();
-    if (local >= 0 && local < layout.num_owned()) values[local] = value;
-  };
-  for (std::int32_t node = 0; node < scene.mesh.num_local(); ++node)
-    for (int c = 0; c < d; ++c)
-      put(layout.equation(node, c), displacement[std::size_t(node) * d + c]);
-  for (auto* contact : scene.contacts) {
-    if (std::holds_alternative<Penalty>(contact->pair().enforcement)) continue;
-    const auto& stored = checkpoint.nodal.at(multiplier_name(*contact)).values;
-    std::vector<double> multipliers;
-    for (const auto node : contact->nodes().nodes) {
-      multipliers.push_back(stored[node]);
-      if (const auto* unknown = std::get_if<Semismooth>(&contact->pair().enforcement))
-        put(layout.extra_equation(unknown->field, node), stored[node] / contact->multiplier_scale());
-    }
-    contact->hold_multipliers(std::move(multipliers));
-  }
-}
-
 nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
@@ -220,6 +173,26 @@ nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds) {
           {"cpu_seconds", sums[0]},
           {"peak_memory_bytes", sums[1]},
           {"phase_seconds", phases}};
+}
+
+nlohmann::ordered_json contact_results(const Scene& scene, const Ledger& ledger,
+                                       const std::vector<ContactTotals>& totals) {
+  nlohmann::ordered_json results;
+  for (std::size_t i = 0; i < totals.size(); ++i) {
+    const auto& pair = totals[i];
+    auto& json = results[scene.contacts[i]->pair().name];
+    json = {{"force", pair.force},
+            {"area", pair.area},
+            {"max_pressure", pair.max_pressure},
+            {"largest_penetration", pair.largest_penetration}};
+    if (scene.contacts[i]->tangential())
+      json["friction"] = {{"force", pair.tangential_force},
+                          {"stick_area", pair.stick_area},
+                          {"slip_area", pair.slip_area},
+                          {"open_area", pair.open_area},
+                          {"dissipation", ledger.dissipated_by_pair()[i]}};
+  }
+  return results;
 }
 
 nlohmann::ordered_json describe_scene(const Scene& scene) {

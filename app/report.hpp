@@ -1,8 +1,7 @@
-// What a run tells about itself: rows of the history, fields, checkpoint, summary. Reads the scene, changes nothing.
+// What a run tells about itself: rows of the history, fields, summary. Reads the scene, changes nothing.
 #pragma once
 
 #include "ledger.hpp"
-#include "output/checkpoint.hpp"
 #include "output/fields.hpp"
 #include "scene.hpp"
 #include "solve/newton.hpp"
@@ -17,6 +16,7 @@ namespace amontons {
 struct IncrementReport {
   double time = 0.0;
   SolveOutcome outcome;
+  double path_error = 0.0; // of the increment that ends here; zero if not measured
   bool certified = false;
 };
 
@@ -28,15 +28,12 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
 /// Writes the fields that the deck asks for. Collective.
 void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::vector<ContactSamples>& samples);
 
-/// All that must be the same for a restart to make sense, besides the mesh.
-std::string run_identity(const Scene& scene);
-/// Unknowns, multipliers and books as a checkpoint. Collective.
-Checkpoint make_checkpoint(const Scene& scene, const Ledger& ledger, Vec unknowns);
-/// Puts a checkpoint's values back into the unknowns and the held multipliers. Collective.
-void restore_unknowns(Scene& scene, const Checkpoint& checkpoint, Vec unknowns);
-
 /// Seconds per phase (mean over ranks), CPU seconds and peak memory (sums over ranks). Collective.
 nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds);
+/// What each pair transmits at the end of the run; of frictional pairs also the shear force, the areas that stick,
+/// slide and are open, and the dissipation since the start.
+nlohmann::ordered_json contact_results(const Scene& scene, const Ledger& ledger,
+                                       const std::vector<ContactTotals>& totals);
 /// Sizes, effects on and off, pairs and how they are enforced. Collective.
 nlohmann::ordered_json describe_scene(const Scene& scene);
 

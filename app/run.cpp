@@ -5,15 +5,17 @@
 #include "base/log.hpp"
 #include "base/timer.hpp"
 #include "certify.hpp"
+#include "increment_solver.hpp"
 #include "ledger.hpp"
 #include "output/history.hpp"
 #include "output/results_directory.hpp"
 #include "output/summary.hpp"
+#include "path_record.hpp"
 #include "report.hpp"
+#include "restart.hpp"
 #include "scene.hpp"
-#include "solve/bounded_newton.hpp"
+#include "solve/path_control.hpp"
 #include "solve/step_control.hpp"
-#include "solve/uzawa.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -39,13 +41,26 @@ class Run {
   void open_results();
   void restart();
   StepPlan plan(std::size_t step) const;
-  SolveOutcome solve_increment(double target);
-  /// Exit status of the step, status_certified to go on.
+  /// A step in progress.
+  struct Stretch {
+    std::size_t step;
+    StepControl control;
+    std::optional<PathControl> path;
+    const std::string& name;
+  };
+  Stretch begin_step(std::size_t step) const;
+  // These return an exit status: status_certified to go on.
   int march_step(std::size_t step);
-  void accept(std::size_t step, const SolveOutcome& outcome, double next_increment, bool step_ends);
-  void write_checkpoint_file(std::size_t step, double next_increment);
-  void progress(const std::string& step, const SolveOutcome& outcome, const std::vector<ContactTotals>& totals,
-                bool certified);
+  int stop(const Stretch& stretch);
+  int cut_back(Stretch& stretch, double target, const std::string& reason);
+  int accept_whole(Stretch& stretch, const SolveOutcome& outcome);
+  int compare_halves(Stretch& stretch, const SolveOutcome& outcome, double seconds);
+  int control_path(Stretch& stretch, const SolvedState& whole, const std::vector<SolvedState>& halves, double seconds);
+  PathDifference difference(const SolvedState& whole, const std::vector<SolvedState>& halves);
+  void count(const SolveOutcome& outcome);
+  void accept(const Stretch& stretch, const SolveOutcome& outcome, double path_error);
+  void write_checkpoint_file(const Stretch& stretch);
+  void progress(const std::string& step, const IncrementReport& report, const std::vector<ContactTotals>& totals);
   int finish(int status, const std::string& reason);
   std::string file(const char* name) const { return directory_ + "/" + name; }
 
@@ -55,17 +70,15 @@ class Run {
   double started_ = now();
   Log log_;
   std::unique_ptr<Scene> scene_;
-  std::string directory_, solver_;
-  std::unique_ptr<Newton> newton_; // absent with bounded_
-  std::unique_ptr<BoundedNewton> bounded_;
-  std::unique_ptr<UzawaLoop> uzawa_;
+  std::string directory_;
+  std::unique_ptr<IncrementSolver> solver_;
   std::unique_ptr<Ledger> ledger_;
   std::unique_ptr<FieldsWriter> fields_;
   std::unique_ptr<HistoryWriter> history_;
-  VecHandle unknowns_, accepted_;
+  std::optional<PathRecord> path_; // absent unless the deck asks for the path error
   std::size_t first_step_ = 0;
   std::optional<double> resume_time_;
-  double first_time_ = 0.0, resume_increment_ = 0.0;
+  double first_time_ = 0.0, resume_increment_ = 0.0, resume_path_taken_ = 0.0;
   bool stop_requested_ = false;
   // Counts for the summary.
   int increments_ = 0, cutbacks_ = 0, newton_iterations_ = 0, linear_iterations_ = 0, outer_iterations_ = 0,
@@ -79,38 +92,14 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments) : comm_(comm), arguments_
   for (const auto& [name, value] : scene_->deck.petsc)
     default_option("-" + name, value);
   directory_ = arguments.out.value_or(scene_->deck.output.directory);
-  unknowns_ = scene_->layout->new_vector();
-  accepted_ = scene_->layout->new_vector();
   ledger_ = std::make_unique<Ledger>(*scene_);
-  const auto stop = [this] { return stop_requested_ = interrupted(comm_); };
-  if (scene_->bounds) {
-    solver_ = choose_bounded_solver(*scene_->problem);
-    bounded_ = std::make_unique<BoundedNewton>(*scene_->problem, *scene_->bounds, stop);
-  } else {
-    solver_ = choose_linear_solver(*scene_->problem);
-    newton_ = std::make_unique<Newton>(*scene_->problem, stop);
-  }
-  if (scene_->multipliers) {
-    double tolerance = 1.0;
-    int iterations = 0;
-    for (const auto& pair : scene_->deck.contact)
-      if (const auto* uzawa = std::get_if<UzawaDeck>(&pair.enforce)) {
-        tolerance = std::min(tolerance, uzawa->tolerance);
-        iterations = std::max(iterations, uzawa->max_iterations);
-      }
-    uzawa_ = std::make_unique<UzawaLoop>(*scene_->problem, *newton_, *scene_->multipliers, tolerance, iterations);
-  }
+  solver_ = std::make_unique<IncrementSolver>(*scene_, [this] { return stop_requested_ = interrupted(comm_); });
+  if (measures_path(scene_->deck)) path_.emplace();
   if (arguments_.restart) restart();
   open_results();
 }
 
 void Run::restart() {
-  for (const auto* contact : scene_->contacts)
-    if (contact->tangential())
-      throw UserError(
-          "--restart: the contact pair '" + contact->pair().name +
-          "' has friction, whose history at the points of the surface the checkpoint does not hold. Run the "
-          "deck from its start.");
   const auto checkpoint = read_checkpoint(scene_->mesh, *arguments_.restart, run_identity(*scene_));
   // By time and not by number: the deck may have got more or longer steps since.
   const auto& steps = scene_->deck.steps;
@@ -120,13 +109,12 @@ void Run::restart() {
   resume_increment_ = checkpoint.next_increment;
   resume_time_ = checkpoint.time;
   increments_ = checkpoint.increment;
-  restore_unknowns(*scene_, checkpoint, unknowns_);
-  scene_->problem->begin_increment(checkpoint.time, unknowns_);
-  const auto residual = scene_->layout->new_vector();
-  scene_->problem->residual(unknowns_, residual);
-  ledger_->restore(unknowns_, checkpoint.global.at("work")[0], checkpoint.global.at("work")[1]);
-  scene_->problem->commit(unknowns_);
-  AMT_PETSC(VecCopy(unknowns_, accepted_));
+  restore_state(*scene_, *ledger_, checkpoint, solver_->unknowns());
+  solver_->resume();
+  if (path_ && checkpoint.global.contains("path")) {
+    path_->restore(checkpoint);
+    resume_path_taken_ = checkpoint.global.at("path_taken").at(0);
+  }
 }
 
 void Run::open_results() {
@@ -150,7 +138,7 @@ void Run::open_results() {
   log_.line(formatted("  %lld displacement and %lld multiplier unknowns on %d rank%s; %s",
                       static_cast<long long>(mesh.num_global) * mesh.dim,
                       static_cast<long long>(scene_->layout->num_extra()), ranks, ranks == 1 ? "" : "s",
-                      solver_.c_str()));
+                      solver_->linear_solver().c_str()));
   if (!scene_->floating.empty())
     log_.line("  held by contact alone: " + join_names(scene_->floating) +
               " (their tangent gets a support of 1e-8; the solution carries no artificial force)");
@@ -176,85 +164,180 @@ StepPlan Run::plan(std::size_t step) const {
   return plan;
 }
 
-SolveOutcome Run::solve_increment(double target) {
-  AMT_PETSC(VecCopy(accepted_, unknowns_));
-  scene_->problem->begin_increment(target, unknowns_);
-  if (bounded_) return bounded_->solve(unknowns_);
-  return uzawa_ ? uzawa_->solve(unknowns_) : newton_->solve(unknowns_);
+Run::Stretch Run::begin_step(std::size_t step) const {
+  const auto step_plan = plan(step);
+  const auto& declared = scene_->deck.steps[step];
+  const bool resumed = step == first_step_ && first_time_ > step_plan.begin;
+  Stretch stretch{
+      .step = step,
+      .control = StepControl(step_plan, resumed ? first_time_ : step_plan.begin, resumed ? resume_increment_ : 0.0),
+      .path = std::nullopt,
+      .name = declared.name.value};
+  const auto* automatic = std::get_if<AutoIncrements>(&declared.increments);
+  if (automatic && automatic->path_tolerance) {
+    stretch.path.emplace(*automatic->path_tolerance, step_plan.end - step_plan.begin);
+    if (resumed) stretch.path->set_taken(resume_path_taken_);
+  }
+  return stretch;
 }
 
 int Run::march_step(std::size_t step) {
-  const auto& name = scene_->deck.steps[step].name.value;
-  const auto step_plan = plan(step);
-  const bool resumed = step == first_step_ && first_time_ > step_plan.begin;
-  StepControl control(step_plan, resumed ? first_time_ : step_plan.begin, resumed ? resume_increment_ : 0.0);
-  while (!control.finished()) {
-    const double target = control.target();
-    const auto outcome = solve_increment(target);
-    newton_iterations_ += outcome.newton;
-    linear_iterations_ += outcome.linear;
-    outer_iterations_ += outcome.outer;
-    factorizations_ += outcome.factorizations;
-    if (stop_requested_) {
-      AMT_PETSC(VecCopy(accepted_, unknowns_));
-      scene_->problem->roll_back();
-      write_checkpoint_file(step, control.increment());
-      return status_interrupted;
-    }
-    if (!outcome.converged) {
-      ++cutbacks_;
-      scene_->problem->roll_back();
-      log_.line(formatted("  %s: t = %g not reached: %s", name.c_str(), target, outcome.reason.c_str()));
-      if (!control.rejected()) {
-        log_.line("  no smaller increment is allowed: giving up");
-        return status_not_converged;
-      }
-      continue;
-    }
-    control.accepted(outcome.newton);
-    accept(step, outcome, control.increment(), control.finished());
+  auto stretch = begin_step(step);
+  int status = status_certified;
+  while (status == status_certified && !stretch.control.finished()) {
+    const double begun = now(), target = stretch.control.target();
+    const auto outcome = solver_->solve(target);
+    count(outcome);
+    if (stop_requested_)
+      status = stop(stretch);
+    else if (!outcome.converged)
+      status = cut_back(stretch, target, outcome.reason);
+    else if (stretch.path || scene_->deck.estimate_path_error)
+      status = compare_halves(stretch, outcome, now() - begun);
+    else
+      status = accept_whole(stretch, outcome);
+  }
+  return status;
+}
+
+void Run::count(const SolveOutcome& outcome) {
+  newton_iterations_ += outcome.newton;
+  linear_iterations_ += outcome.linear;
+  outer_iterations_ += outcome.outer;
+  factorizations_ += outcome.factorizations;
+}
+
+int Run::stop(const Stretch& stretch) {
+  solver_->roll_back();
+  write_checkpoint_file(stretch);
+  return status_interrupted;
+}
+
+int Run::cut_back(Stretch& stretch, double target, const std::string& reason) {
+  ++cutbacks_;
+  solver_->roll_back();
+  log_.line(formatted("  %s: t = %g not reached: %s", stretch.name.c_str(), target, reason.c_str()));
+  if (stretch.control.rejected()) return status_certified;
+  log_.line("  no smaller increment is allowed: giving up");
+  return status_not_converged;
+}
+
+int Run::accept_whole(Stretch& stretch, const SolveOutcome& outcome) {
+  stretch.control.accepted(outcome.newton);
+  accept(stretch, outcome, 0.0);
+  return status_certified;
+}
+
+/// The increment has been solved whole, in `seconds`; solves it in halves, too, and keeps one of the two solutions.
+int Run::compare_halves(Stretch& stretch, const SolveOutcome& outcome, double seconds) {
+  const double begun = now(), target = stretch.control.target();
+  const auto whole = solver_->put_aside(outcome);
+  solver_->roll_back();
+  SolveOutcome both;
+  const auto halves = solver_->solve_halves(target, both);
+  count(both);
+  if (stop_requested_) return stop(stretch);
+  if (stretch.path) {
+    path_->add_cost(outcome.newton, seconds);
+    if (both.converged) return control_path(stretch, whole, halves, now() - begun);
+    path_->add_cost(both.newton, now() - begun);
+    return cut_back(stretch, target, both.reason);
+  }
+  double error = 0.0;
+  if (both.converged)
+    error = path_->add(difference(whole, halves), KeptSolution::Whole);
+  else
+    path_->add_unmeasured();
+  path_->add_cost(both.newton, now() - begun);
+  solver_->revisit(whole);
+  stretch.control.accepted(outcome.newton);
+  accept(stretch, outcome, error);
+  return status_certified;
+}
+
+/// Keeps the halves, which took `seconds`, each as an increment of its own, or goes back for a shorter increment.
+int Run::control_path(Stretch& stretch, const SolvedState& whole, const std::vector<SolvedState>& halves,
+                      double seconds) {
+  auto& control = stretch.control;
+  const double dt = whole.time - control.now();
+  const auto measured = difference(whole, halves);
+  const auto verdict = stretch.path->judge(measured.largest(), measured.status, dt);
+  const auto sizes =
+      formatted("halves differ by %.2e, in status on %.2e of the area", measured.largest(), measured.status);
+  if (!verdict.accepted && control.shortened(verdict.factor)) {
+    path_->add_rejected();
+    path_->add_cost(halves[0].outcome.newton + halves[1].outcome.newton, seconds);
+    log_.line(formatted("  %s: t = %g is too far: %s", stretch.name.c_str(), whole.time, sizes.c_str()));
+    return status_certified;
+  }
+  if (!verdict.accepted) {
+    path_->add_beyond_tolerance();
+    log_.line(formatted("  %s: t = %g is kept for no smaller increment is allowed: %s", stretch.name.c_str(),
+                        whole.time, sizes.c_str()));
+  }
+  stretch.path->spend(measured.largest(), dt);
+  const double error = path_->add(measured, KeptSolution::Halves);
+  for (const auto& half : halves) {
+    const bool second = &half == &halves.back();
+    if (second) control.accepted(whole.outcome.newton, verdict.factor);
+    solver_->revisit(half);
+    accept(stretch, half.outcome, second ? error : 0.0);
   }
   return status_certified;
 }
 
-void Run::accept(std::size_t step, const SolveOutcome& outcome, double next_increment, bool step_ends) {
+PathDifference Run::difference(const SolvedState& whole, const std::vector<SolvedState>& halves) {
+  const auto view = [this](const SolvedState& state) {
+    return PathState{.dim = scene_->mesh.dim, .displacement = state.displacement, .samples = state.samples};
+  };
+  path_->scales.include(path_scales(comm_, view(whole)));
+  for (const auto& half : halves)
+    path_->scales.include(path_scales(comm_, view(half)));
+  return path_difference(comm_, view(whole), view(halves.back()), path_->scales);
+}
+
+/// Takes the state in the solver's unknowns; `path_error`: of the increment that ends here, zero if not measured.
+void Run::accept(const Stretch& stretch, const SolveOutcome& outcome, double path_error) {
   ++increments_;
-  ledger_->accept(unknowns_);
-  const auto state = scene_->problem->state_at(unknowns_);
+  const Vec unknowns = solver_->unknowns();
+  ledger_->accept(unknowns);
+  const auto state = scene_->problem->state_at(unknowns);
   std::vector<ContactSamples> samples;
   last_totals_.clear();
   for (auto* contact : scene_->contacts) {
     last_totals_.push_back(contact->totals(state));
     samples.push_back(contact->samples(state));
   }
-  bool certified = false;
+  IncrementReport report{.time = state.time, .outcome = outcome, .path_error = path_error};
   {
     const Phase phase("certificate");
-    certified = certificate_.add(certify_state(*scene_, *ledger_, samples, accepted_, unknowns_), state.time);
+    report.certified =
+        certificate_.add(certify_state(*scene_, *ledger_, samples, solver_->accepted(), unknowns), state.time);
   }
-  const double time = state.time;
-  scene_->problem->commit(unknowns_);
-  AMT_PETSC(VecCopy(unknowns_, accepted_));
+  solver_->commit();
 
   const Phase phase("output");
-  history_->row(
-      history_row(*scene_, *ledger_, last_totals_, {.time = time, .outcome = outcome, .certified = certified}));
-  progress(scene_->deck.steps[step].name.value, outcome, last_totals_, certified);
-  if (step_ends || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns_, samples);
-  write_checkpoint_file(step, next_increment);
+  history_->row(history_row(*scene_, *ledger_, last_totals_, report));
+  progress(stretch.name, report, last_totals_);
+  const bool ends_step = report.time >= scene_->deck.steps[stretch.step].to;
+  if (ends_step || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns, samples);
+  write_checkpoint_file(stretch);
 }
 
-void Run::write_checkpoint_file(std::size_t step, double next_increment) {
-  scene_->problem->state_at(unknowns_);
-  auto checkpoint = make_checkpoint(*scene_, *ledger_, unknowns_);
-  checkpoint.step = static_cast<int>(step);
+void Run::write_checkpoint_file(const Stretch& stretch) {
+  auto checkpoint = make_checkpoint(*scene_, *ledger_, solver_->unknowns());
+  checkpoint.step = static_cast<int>(stretch.step);
   checkpoint.increment = increments_;
-  checkpoint.next_increment = next_increment;
+  checkpoint.next_increment = stretch.control.increment();
+  if (path_) {
+    path_->save(checkpoint);
+    checkpoint.global["path_taken"] = {stretch.path ? stretch.path->taken() : 0.0};
+  }
   write_checkpoint(scene_->mesh, file("checkpoint.h5"), run_identity(*scene_), checkpoint);
 }
 
-void Run::progress(const std::string& step, const SolveOutcome& outcome, const std::vector<ContactTotals>& totals,
-                   bool certified) {
+void Run::progress(const std::string& step, const IncrementReport& report, const std::vector<ContactTotals>& totals) {
+  const auto& outcome = report.outcome;
   const double end = scene_->deck.steps.back().to;
   const double time = scene_->problem->time();
   const double done = time - first_time_;
@@ -267,7 +350,8 @@ void Run::progress(const std::string& step, const SolveOutcome& outcome, const s
   for (const auto& pair : totals)
     pressure = std::max(pressure, pair.max_pressure);
   if (!totals.empty()) line += formatted(", largest pressure %.6g", pressure);
-  line += certified ? ", certified" : ", NOT CERTIFIED";
+  if (report.path_error > 0.0) line += formatted(", path error %.1e", report.path_error);
+  line += report.certified ? ", certified" : ", NOT CERTIFIED";
   if (left > 0.0) line += formatted(", %.0f s left", std::ceil(left));
   log_.line(line);
 }
@@ -293,7 +377,7 @@ int Run::finish(int status, const std::string& reason) {
   summary["deck"] = arguments_.deck;
   summary["ranks"] = ranks;
   summary["scene"] = describe_scene(*scene_);
-  summary["linear_solver"] = solver_;
+  summary["linear_solver"] = solver_->linear_solver();
   summary["increments"] = increments_;
   summary["cutbacks"] = cutbacks_;
   summary["newton_iterations"] = newton_iterations_;
@@ -302,17 +386,12 @@ int Run::finish(int status, const std::string& reason) {
   summary["factorizations"] = factorizations_;
   summary["remedies"] = {{"cutbacks", cutbacks_}, {"supported_bodies", scene_->floating}};
   summary["time"] = scene_->problem->time();
-  nlohmann::ordered_json results;
-  for (std::size_t i = 0; i < last_totals_.size(); ++i)
-    results[scene_->contacts[i]->pair().name] = {{"force", last_totals_[i].force},
-                                                 {"area", last_totals_[i].area},
-                                                 {"max_pressure", last_totals_[i].max_pressure},
-                                                 {"largest_penetration", last_totals_[i].largest_penetration}};
-  summary["contact"] = results;
+  summary["contact"] = contact_results(*scene_, *ledger_, last_totals_);
   summary["energy"] = {{"stored", ledger_->stored_energy()},
                        {"dissipated", ledger_->dissipated_energy()},
                        {"external_work", ledger_->external_work()},
                        {"external_work_uncertainty", ledger_->work_uncertainty()}};
+  if (path_) summary["path"] = path_->to_json();
   summary["certificate"] = certificate_.to_json();
   summary["resources"] = resources(comm_, now() - started_);
   write_summary(comm_, file("summary.json"), summary);

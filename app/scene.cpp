@@ -18,6 +18,8 @@ template <class... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;
 };
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
 
 std::vector<BulkLawPtr> body_laws(const Deck& deck, const Mesh& mesh) {
   std::vector<BulkLawPtr> laws;

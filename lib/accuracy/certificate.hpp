@@ -22,24 +22,30 @@ struct CertificateTolerances {
   double energy = 1e-6;          // violation of the energy bounds / energy scale
   double volume_ratio = 0.0;     // smallest det(I + ∇u) / reference volume
   double friction = 1e-6;        // shear off the law's limit, and negative frictional work, relative (see certify)
-  double slip = 0.05; // tangential motion that is not the slip claimed / motion of the surfaces (see certify)
+  double slip = 0.05;            // tangential motion that is not the slip claimed / largest motion (see certify)
 };
 
 /// Energies over all ranks, the same on every rank. All cumulative since the start of the run.
 struct EnergyLedger {
-  /// Σ potential of all forms: strain energy of the bodies and the potential (σ² − λ²) / (2 ε) of the contact.
+  /// Σ potential of all forms: strain energy of the bodies and the potential (σ² − λ²) / (2 ε) of the contact, normal
+  /// and tangential.
   double stored = 0.0;
   /// Frictional dissipation: Σ over increments of ∫ shear traction · slip.
   double dissipated = 0.0;
   /// Σ ½ (f_old + f) · Δu over supports, loads and moving rigid masters.
   double external_work = 0.0;
-  /// Σ ½ |Δf · Δu|, over the same. Frictionless contact of linear elastic bodies has a convex potential, so in every
-  /// increment
-  ///   f_old · Δu <= Δ stored <= f · Δu   and   |external_work − stored| <= work_uncertainty.
-  /// Friction has no potential. There, external_work = stored + dissipated up to work_uncertainty, in which each slave
-  /// point then counts |½ (t_old + t) · Δg − t · slip − Δ spring energy| + ½ |Δt · Δg|, t its shear traction and Δg its
-  /// tangential motion in the increment: the first is the error of the trapezoidal rule there, the second the part of
-  /// ½ Δf · Δu that friction may take away from the monotone rest.
+  /// Largest |external_work − stored − dissipated| that the length of the increments explains. With f = K u + contact
+  /// forces, K constant (linear elastic bodies), the trapezoidal rule is exact for the bodies, in every increment
+  ///   ½ (f_old + f) · Δu = Δ strain energy + Σ over slave points of ½ (σ_old + σ) Δg + ½ (t_old + t) · Δg_t
+  ///   Δf · Δu = 2 · strain energy(Δu) + Σ Δσ Δg + Δt · Δg_t,
+  /// σ normal traction, t shear traction, g gap and g_t tangential motion of a point. The contact potential ψ(g, λ) is
+  /// convex in g, and where there are multipliers they make it largest, so Σ σ_old Δg <= Δψ <= Σ σ Δg and
+  ///   |Σ ½ (σ_old + σ) Δg − Δψ| <= Σ ½ Δσ Δg = ½ Δf · Δu − strain energy(Δu) − Σ ½ Δt · Δg_t.
+  /// So it is the sum over increments of ½ Δf · Δu − strain energy(Δu), plus for each pair with friction
+  /// |Σ ½ (t_old + t) · Δg_t − t · slip − Δ tangential potential| + Σ ½ |Δt · Δg_t|, and for each curved rigid master
+  /// what its turning normal takes (ContactForm::turning_work). But for the last it falls with the increments; the
+  /// energy item of the certificate holds what remains beyond it to the tolerance. Where a body is not linear elastic
+  /// the first part is Σ ½ |Δf · Δu| over the equations.
   double work_uncertainty = 0.0;
   /// f · u + Σ over slave points of pressure · n · (u_slave − u_master) − 2 · (strain energy), now: zero for linear
   /// elastic bodies in equilibrium. And the sum of the absolute values of the terms.
@@ -82,7 +88,7 @@ struct Certificate {
 
 /// friction_cone: the pair's law is asked anew for its limit at the pressure and slip claimed; shear beyond it (in
 /// slip: off it), shear out of the tangent plane and shear without contact, relative to the pair's largest limit or
-/// shear. slip: Σ |shear| |Δg_t − slip| over Σ |shear| times the largest displacement increment on the surfaces, with
+/// shear. slip: Σ |shear| |Δg_t − slip| over Σ |shear| times the largest displacement increment in the scene, with
 /// Δg_t the tangential motion in this increment that a fresh search finds: what is said to stick must not move and what
 /// is said to slip must have moved so. A penalty's elastic slip shows here as its penetration does in `penetration`.
 /// dissipation: negative work of shear on slip, relative to Σ |shear| slip.

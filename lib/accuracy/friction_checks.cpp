@@ -61,20 +61,26 @@ void check_dissipation(const CertificateInput& input, std::size_t pair, Worst& w
   if (works[0] > 0.0) worst.offer(works[0] / works[1], [&] { return "pair '" + input.pairs[pair].name + "'"; });
 }
 
-/// Displacement increment of the slave relative to the master at the claimed points, from a search of its own, and the
-/// largest increment on this rank's part of the two surfaces. Collective.
-std::vector<Vector> moved_over_master(const CertificateInput& input, std::size_t pair, double& largest) {
+/// The largest displacement increment in the scene, rigid masters included. Collective.
+double largest_increment(const CertificateInput& input) {
+  double largest = 0.0;
+  for (std::int32_t node = 0; node < input.mesh.num_local(); ++node) {
+    Vector moved{};
+    std::copy_n(input.increment.begin() + std::ptrdiff_t(node) * input.mesh.dim, input.mesh.dim, moved.begin());
+    largest = std::max(largest, norm(moved));
+  }
+  for (const auto& pair : input.pairs)
+    if (const auto* rigid = std::get_if<MovedShape>(&pair.master)) largest = std::max(largest, norm(rigid->increment));
+  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, input.mesh.comm);
+  return largest;
+}
+
+/// Displacement increment of the slave relative to the master at the claimed points, from a search of its own.
+/// Collective.
+std::vector<Vector> moved_over_master(const CertificateInput& input, std::size_t pair) {
   const Mesh& mesh = input.mesh;
   const ContactSamples& samples = input.samples[pair];
   const FacetSet& slave = mesh.surfaces.at(input.pairs[pair].slave);
-  const auto include = [&](const FacetSet& surface) {
-    for (const std::int32_t node : surface.nodes) {
-      Vector moved{};
-      std::copy_n(input.increment.begin() + std::ptrdiff_t(node) * mesh.dim, mesh.dim, moved.begin());
-      largest = std::max(largest, norm(moved));
-    }
-  };
-  include(slave);
   const auto points_with = [&](std::span<const double> displacement) {
     std::vector<SlavePoint> points;
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -84,7 +90,6 @@ std::vector<Vector> moved_over_master(const CertificateInput& input, std::size_t
   const auto points = points_with(input.increment);
   std::vector<Vector> moved;
   if (const auto* rigid = std::get_if<MovedShape>(&input.pairs[pair].master)) {
-    largest = std::max(largest, norm(rigid->increment));
     for (const SlavePoint& point : points) {
       moved.push_back(point.displacement);
       for (std::size_t c = 0; c < 3; ++c)
@@ -93,17 +98,15 @@ std::vector<Vector> moved_over_master(const CertificateInput& input, std::size_t
     return moved;
   }
   const FacetSet& master = mesh.surfaces.at(std::get<std::string>(input.pairs[pair].master));
-  include(master);
   const double reach = reach_of(mesh, input.displacement, master, points_with(input.displacement));
   for (const MasterHit& hit : find_on_master(mesh, input.increment, master, points, reach))
     moved.push_back(hit.jump);
   return moved;
 }
 
-void check_slip(const CertificateInput& input, std::size_t pair, Worst& worst) {
+void check_slip(const CertificateInput& input, std::size_t pair, double scale, Worst& worst) {
   const ContactSamples& samples = input.samples[pair];
-  double largest = 0.0;
-  const std::vector<Vector> moved = moved_over_master(input, pair, largest);
+  const std::vector<Vector> moved = moved_over_master(input, pair);
   std::array<double, 2> sums{}; // Σ |shear| |Δg_t − slip| w, Σ |shear| w
   for (std::size_t i = 0; i < samples.shear.size(); ++i) {
     const double along = dot(moved[i], samples.normal[i]);
@@ -115,19 +118,19 @@ void check_slip(const CertificateInput& input, std::size_t pair, Worst& worst) {
     sums[1] += weight;
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, input.mesh.comm);
-  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, input.mesh.comm);
-  if (sums[0] > 0.0)
-    worst.offer(sums[0] / (sums[1] * largest), [&] { return "pair '" + input.pairs[pair].name + "'"; });
+  if (sums[0] > 0.0) worst.offer(sums[0] / (sums[1] * scale), [&] { return "pair '" + input.pairs[pair].name + "'"; });
 }
 
 } // namespace
 
 FrictionChecks check_friction(const CertificateInput& input) {
   FrictionChecks checks;
+  const bool any = std::any_of(input.pairs.begin(), input.pairs.end(), [](const auto& pair) { return pair.friction; });
+  const double scale = any ? largest_increment(input) : 0.0;
   for (std::size_t pair = 0; pair < input.pairs.size(); ++pair) {
     if (!input.pairs[pair].friction) continue;
     check_cone(input, pair, checks.cone);
-    check_slip(input, pair, checks.slip);
+    check_slip(input, pair, scale, checks.slip);
     check_dissipation(input, pair, checks.dissipation);
   }
   checks.cone = over_ranks(input.mesh.comm, std::move(checks.cone));

@@ -280,8 +280,8 @@ Worst check_overlap(const CertificateInput& input) {
 
   const std::vector<std::uint8_t> declared = declared_bodies(input);
   const auto offer = [&](const Intruder& intruder, const Depth& depth) {
-    const auto& [probe, inside] = intruder;
     worst.offer(depth.depth / depth.size, [&] {
+      const auto& [probe, inside] = intruder;
       const bool known = declared[probe.body * bodies + inside] != 0;
       return "body '" + mesh.bodies[probe.body] + "' inside body '" + mesh.bodies[inside] + "' at " +
              place_text(std::span(probe.place).first(mesh.dim)) + ", " + (known ? "a" : "no") +

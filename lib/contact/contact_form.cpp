@@ -64,6 +64,9 @@ ContactForm::ContactForm(const DofLayout& layout, ContactPair pair)
     gap_[i] = points_.points()[i].gap0;
   }
   couple_near();
+  if (master_turns())
+    for (const auto& point : points_.points())
+      normals_old_.push_back({.sigma = 0.0, .gap = point.gap0, .normal = point.normal, .jump = {}});
 
   double sums[2] = {0.0, 0.0};
   for (const auto& point : points_.points()) {
@@ -362,6 +365,7 @@ void ContactForm::add_tangent(const State& state, Tangent& tangent) {
 
 void ContactForm::commit(const State& state) {
   evaluate(state);
+  remember(state);
   multipliers_old_ = multipliers_;
   if (tangential_) tangential_->commit(state);
 }
@@ -369,6 +373,21 @@ void ContactForm::commit(const State& state) {
 void ContactForm::roll_back() {
   multipliers_ = multipliers_old_;
   if (tangential_) tangential_->roll_back();
+  assembled_ = false;
+}
+
+ContactHistory ContactForm::accepted() const {
+  ContactHistory history;
+  history.multipliers = multipliers_old_;
+  history.normals = normals_old_;
+  if (tangential_) tangential_->save(history);
+  return history;
+}
+
+void ContactForm::restore(const ContactHistory& history) {
+  multipliers_ = multipliers_old_ = history.multipliers;
+  normals_old_ = history.normals;
+  if (tangential_) tangential_->restore(history);
   assembled_ = false;
 }
 
@@ -474,7 +493,9 @@ ContactSamples ContactForm::samples(const State& state) {
 ContactTotals ContactForm::totals(const State& state) {
   evaluate(state);
   ContactTotals totals;
-  double sums[14] = {}; // force, moment, area, tangential force, stick and slip area, dissipation, path error
+  // Force, moment, area; with friction: tangential force, stick, slip area, dissipation, mismatch, open area, change.
+  // Last: turning work.
+  double sums[17] = {};
   double largest[2] = {};
   const auto& points = points_.points();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -501,9 +522,13 @@ ContactTotals ContactForm::totals(const State& state) {
     sums[10] = friction.stick_area;
     sums[11] = friction.slip_area;
     sums[12] = friction.dissipation;
-    sums[13] = friction.path_error;
+    sums[13] = friction.mismatch;
+    sums[15] = friction.change;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!active_[i]) sums[14] += points[i].weight;
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums, tangential_ ? 14 : 7, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
+  sums[16] = turning_work(state);
+  MPI_Allreduce(MPI_IN_PLACE, sums, 17, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
   MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, layout_.mesh().comm);
   for (int c = 0; c < 3; ++c) {
     totals.force[c] = sums[c];
@@ -513,8 +538,10 @@ ContactTotals ContactForm::totals(const State& state) {
   totals.area = sums[6];
   totals.stick_area = sums[10];
   totals.slip_area = sums[11];
+  totals.open_area = sums[14];
   totals.dissipation = sums[12];
-  totals.path_error = sums[13];
+  totals.path_error = std::abs(sums[13]) + sums[15];
+  totals.turning = sums[16];
   totals.max_pressure = largest[0];
   totals.largest_penetration = largest[1];
   return totals;

@@ -32,11 +32,20 @@ class ContactForm : public Form, public PairReport {
   bool coupling_changed(const State& state) override;
   void commit(const State& state) override;
   void roll_back() override;
+  /// A ContactHistory.
+  std::any history() const override { return accepted(); }
+  void restore(const std::any& history) override { restore(std::any_cast<const ContactHistory&>(history)); }
+  /// What of an accepted state follows from its unknowns and need not be in a checkpoint; commit() does it, too.
+  /// Collective.
+  void remember(const State& state) override;
+  ContactHistory accepted() const override;
+  void restore(const ContactHistory& history) override;
   double stored_energy(const State& state) override;
   bool tangent_is_symmetric() const override { return !tangential_; }
 
   const ContactPair& pair() const override { return pair_; }
   const NodeField& nodes() const override { return nodes_; }
+  const ContactPoints& points() const override { return points_; }
 
   double multiplier_scale() const override { return scale_; }
   const std::vector<double>& multipliers() const override { return multipliers_; }
@@ -62,6 +71,9 @@ class ContactForm : public Form, public PairReport {
   void evaluate_friction(const State& state);
   double gap_at(const ContactPoint& point, const State& state) const;
   double multiplier_at(const ContactPoint& point) const;
+  bool master_turns() const;
+  std::array<double, 3> relative_jump(const ContactPoint& point, const State& state) const;
+  double turning_work(const State& state) const;
   double sigma(std::size_t i) const { return active_[i] ? augmented_[i] : 0.0; }
   void gather_equations(const Group& group, std::vector<PetscInt>& equations) const;
   ContactBlock block_layout(const Group& group, std::size_t size) const;
@@ -79,6 +91,7 @@ class ContactForm : public Form, public PairReport {
   double scale_ = 1.0; // unknown multiplier x scale_ = traction: gives it the unit of a displacement (see .cpp)
   std::vector<double> multipliers_, multipliers_old_; // traction at nodes_
   double rigid_time_ = 0.0;
+  std::vector<NormalHistory> normals_old_; // empty unless master_turns()
   // At the last evaluation, per point:
   std::vector<double> gap_, lambda_, augmented_;
   std::vector<std::uint8_t> active_, assembled_active_, coupled_;

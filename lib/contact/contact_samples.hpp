@@ -34,6 +34,10 @@ struct ContactSamples {
   std::vector<double> accumulated_slip;
   std::vector<FrictionContext> friction_context; // what the law was asked with, besides pressure and slip
   std::vector<FrictionState> friction_state_old; // at the last accepted state
+  /// State variables of the friction law, as many as it has: [variable][point], at the end of the increment; zero where
+  /// open.
+  std::vector<std::string> state_names;
+  std::vector<std::vector<double>> states;
   /// Nodal pressure on the slave surface at the local mesh nodes `nodes` (owned vertices): multipliers, or for penalty
   /// the projected pressure.
   std::vector<std::int32_t> nodes;

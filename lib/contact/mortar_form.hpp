@@ -24,12 +24,17 @@ class MortarForm : public Form, public PairReport {
   bool tangent_is_constant() const override { return true; }
   void commit(const State&) override { multipliers_old_ = multipliers_; }
   void roll_back() override { multipliers_ = multipliers_old_; }
+  std::any history() const override { return accepted(); }
+  void restore(const std::any& history) override { restore(std::any_cast<const ContactHistory&>(history)); }
+  ContactHistory accepted() const override;
+  void restore(const ContactHistory& history) override { multipliers_ = multipliers_old_ = history.multipliers; }
 
   const ContactPair& pair() const override { return pair_; }
   /// All nodes of the slave surface that this rank knows; for order 2 the controls that go with them.
   const NodeField& nodes() const override { return nodes_; }
   const std::vector<double>& multipliers() const override { return multipliers_; }
   void hold_multipliers(std::vector<double> multipliers) override { multipliers_ = std::move(multipliers); }
+  const ContactPoints& points() const override { return points_; }
   ContactSamples samples(const State& state) override;
   ContactTotals totals(const State& state) override;
   double work_of_displacement(const State& state) override;

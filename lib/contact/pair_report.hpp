@@ -1,7 +1,9 @@
 // What books, reports and the certificate ask of a contact pair, whatever its formulation.
 #pragma once
 
+#include "contact/contact_history.hpp"
 #include "contact/contact_pair.hpp"
+#include "contact/contact_points.hpp"
 #include "contact/contact_samples.hpp"
 #include "contact/tangential_part.hpp"
 #include "form/form.hpp"
@@ -20,9 +22,10 @@ struct ContactTotals {
   double largest_penetration = 0.0; // −g over the points in contact, relative to the facet size
   // Zero without friction:
   std::array<double, 3> tangential_force{}; // on the slave; part of `force`
-  double stick_area = 0.0, slip_area = 0.0;
+  double stick_area = 0.0, slip_area = 0.0, open_area = 0.0;
   double dissipation = 0.0; // in the increment since the last accepted state
-  double path_error = 0.0;  // of the shear's energy in that increment (TangentialPart::sums)
+  double turning = 0.0;     // see ContactForm::turning_work
+  double path_error = 0.0;  // of the shear's work in that increment: |mismatch| + change of TangentialSums
 };
 
 class PairReport {
@@ -40,6 +43,12 @@ class PairReport {
   virtual void hold_multipliers(std::vector<double> multipliers) = 0;
   /// Traction per unknown multiplier of the layout's extra field (`semismooth`).
   virtual double multiplier_scale() const { return 1.0; }
+  virtual const ContactPoints& points() const = 0;
+  /// What the pair remembers of the last accepted state, and taking that up again.
+  virtual ContactHistory accepted() const = 0;
+  virtual void restore(const ContactHistory& history) = 0;
+  /// What of an accepted state follows from its unknowns and need not be in a checkpoint. Collective.
+  virtual void remember(const State&) {}
   /// Absent without friction.
   virtual const TangentialPart* tangential() const { return nullptr; }
 

@@ -11,7 +11,7 @@
 // carry its traction, in every increment anew, also where nothing changes: surfaces that stick would creep, the farther
 // the more increments are taken. With q as above Δλ_t = 0 and Δg_t = 0 solve an increment without load, and the
 // differences add up to h² λ_t'' / (6 ε), as those of the gap do. Both agree in the first increment, and summed over
-// increments the nodal equation below is the same.
+// increments the nodal equation below is the same. A point that was open has q = P λ_t + ε Δg_t.
 //
 // Nodal λ_i have dim Cartesian components: no tangent basis has to be chosen at nodes, where the surface has no normal,
 // or agreed upon between ranks. As for the normal part they are the lumped projection of the traction,
@@ -77,7 +77,7 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
   contexts_.resize(n);
   responses_.resize(n);
   jump_.resize(n);
-  increment_.resize(n);
+  motion_.resize(n);
   active_.assign(n, 0);
   pressed_.assign(n, 0);
   assembled_status_.assign(n, unknown_status);
@@ -96,17 +96,19 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
 
 // --- state at a point ------------------------------------------------------------------------------------------------
 
-/// Δλ_t, force per area.
-TangentVector TangentialPart::multiplier_increment(const ContactPoint& point) const {
+/// What a point carries before it moves: σ_t,old + Δλ_t, or λ_t where it was open; force per area.
+TangentVector TangentialPart::carried(std::size_t i) const {
+  const auto& point = points_.points()[i];
+  const auto& old = history_[i];
   const auto nodes = points_.slave().facet(point.facet);
   const auto shape = points_.multiplier_shape(point);
-  TangentVector increment{};
+  TangentVector carried = old.traction;
   for (std::size_t a = 0; a < shape.size(); ++a)
     for (int c = 0; c < layout_.dim(); ++c) {
       const auto at = position_[nodes[a]];
-      increment[c] += shape[a] * (multipliers_[c][at] - multipliers_old_[c][at]);
+      carried[c] += shape[a] * (multipliers_[c][at] - (old.open ? 0.0 : multipliers_old_[c][at]));
     }
-  return increment;
+  return carried;
 }
 
 void TangentialPart::fetch_multipliers(const State& state) {
@@ -146,26 +148,23 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
     active_[i] = active[i];
     contexts_[i] = {.dt = std::max(0.0, state.time - accepted_time_), .factor = factor_[i], .new_contact = old.open};
     jump_[i] = points_.displacement_jump(point, state);
-    std::array<double, 3> moved{}, trial{};
+    std::array<double, 3> trial{};
     for (int c = 0; c < 3; ++c) {
       jump_[i][c] -= shift[c];
-      moved[c] = jump_[i][c] - old.jump[c];
+      motion_[i][c] = jump_[i][c] - old.jump[c];
     }
     if (!active[i]) {
       responses_[i] = {};
-      increment_[i] = tangential(moved, point.normal);
       pressed_[i] = 0;
       continue;
     }
-    increment_[i] = tangential(moved, point.normal);
-    auto carried = multiplier_increment(point);
+    const auto held = tangential(carried(i), point.normal);
+    const auto increment = tangential(motion_[i], point.normal);
     for (int c = 0; c < 3; ++c)
-      carried[c] += old.traction[c];
-    const auto held = tangential(carried, point.normal);
-    for (int c = 0; c < 3; ++c)
-      trial[c] = held[c] + point.epsilon * increment_[i][c];
+      trial[c] = held[c] + point.epsilon * increment[c];
     pressed_[i] = sigma[i] < 0.0;
-    responses_[i] = return_map(pair_.friction->law, contexts_[i], trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
+    responses_[i] =
+        return_map(pair_.friction->law, contexts_[i], trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
   }
 }
 
@@ -339,6 +338,18 @@ void TangentialPart::commit(const State& state) {
 
 void TangentialPart::roll_back() { multipliers_ = multipliers_old_; }
 
+void TangentialPart::save(ContactHistory& history) const {
+  history.time = accepted_time_;
+  history.tangential_multipliers = multipliers_old_;
+  history.points = history_;
+}
+
+void TangentialPart::restore(const ContactHistory& history) {
+  accepted_time_ = history.time;
+  multipliers_ = multipliers_old_ = history.tangential_multipliers;
+  history_ = history.points;
+}
+
 std::vector<std::vector<double>> TangentialPart::multiplier_defect() const {
   std::vector<std::vector<double>> defect(multipliers_.size(), std::vector<double>(nodes_.nodes.size(), 0.0));
   const auto& points = points_.points();
@@ -356,22 +367,33 @@ std::vector<std::vector<double>> TangentialPart::multiplier_defect() const {
 
 // --- energy and reports ----------------------------------------------------------------------------------------------
 
-/// Elastic energy per area that a penalty spring under this traction holds.
-double TangentialPart::spring_energy(const TangentVector& traction, double epsilon) const {
-  return has_multipliers() ? 0.0 : dot(traction, traction) / (2.0 * epsilon);
+/// Potential of a point, lumped as the multipliers are: (|σ_t|² − Σ N_i |λ_i|²) / (2 ε). With σ_t − P λ_t = ε g_e,
+///   dψ = σ_t · dg_e + Σ N_i (σ_t − λ_i) · dλ_i / ε,
+/// the last part of which is zero in the sum over the surface: what sticking points move is elastic.
+double TangentialPart::spring_energy(std::size_t i, const TangentVector& traction,
+                                     const std::vector<std::vector<double>>& multipliers) const {
+  const auto& point = points_.points()[i];
+  double square = dot(traction, traction);
+  if (has_multipliers()) {
+    const auto nodes = points_.slave().facet(point.facet);
+    const auto shape = points_.multiplier_shape(point);
+    for (std::size_t a = 0; a < shape.size(); ++a)
+      for (const auto& component : multipliers)
+        square -= shape[a] * std::pow(component[position_[nodes[a]]], 2);
+  }
+  return square / (2.0 * point.epsilon);
 }
 
 double TangentialPart::stored_energy() const {
   double energy = 0.0;
   const auto& points = points_.points();
   for (std::size_t i = 0; i < points.size(); ++i)
-    energy += points[i].weight * spring_energy(responses_[i].traction, points[i].epsilon);
+    energy += points[i].weight * spring_energy(i, responses_[i].traction, multipliers_);
   return energy;
 }
 
-/// path_error: the trapezoidal work of the shear traction over the increment against what the end of the increment
-/// says, dissipation and stored energy, plus half the work of the change of traction: how far book-keeping by the ends
-/// of increments can be off at the interface.
+/// mismatch: the trapezoidal work of the shear traction over the increment, less what the end of the increment says,
+/// dissipation and stored energy: what book-keeping by the ends of increments is off at the interface.
 TangentialSums TangentialPart::sums() const {
   TangentialSums sums;
   const auto& points = points_.points();
@@ -386,17 +408,20 @@ TangentialSums TangentialPart::sums() const {
     sums.dissipation += weight * dissipation;
     for (int c = 0; c < 3; ++c)
       sums.work += weight * now.traction[c] * (jump_[i][c] + shift[c]);
-    const double trapezoid = 0.5 * (dot(now.traction, increment_[i]) + dot(old.traction, increment_[i]));
-    const double change = 0.5 * (dot(now.traction, increment_[i]) - dot(old.traction, increment_[i]));
+    const double at_end = dot(now.traction, motion_[i]), at_start = dot(old.traction, motion_[i]);
     const double stored =
-        spring_energy(now.traction, points[i].epsilon) - spring_energy(old.traction, points[i].epsilon);
-    sums.path_error += weight * (std::abs(trapezoid - dissipation - stored) + std::abs(change));
+        spring_energy(i, now.traction, multipliers_) - spring_energy(i, old.traction, multipliers_old_);
+    sums.mismatch += weight * (0.5 * (at_end + at_start) - dissipation - stored);
+    sums.change += weight * 0.5 * std::abs(at_end - at_start);
   }
   return sums;
 }
 
 void TangentialPart::sample(ContactSamples& samples) const {
   samples.has_friction = true;
+  const auto names = state_names(pair_.friction->law);
+  samples.state_names.assign(names.begin(), names.end());
+  samples.states.assign(names.size(), {});
   for (std::size_t i = 0; i < responses_.size(); ++i) {
     samples.status[i] = status(i);
     const auto& traction = responses_[i].traction; // conjugate to u_slave: what the slave exerts
@@ -406,6 +431,8 @@ void TangentialPart::sample(ContactSamples& samples) const {
     samples.accumulated_slip.push_back(history_[i].slip + responses_[i].slip);
     samples.friction_context.push_back(contexts_[i]);
     samples.friction_state_old.push_back(history_[i].state);
+    for (std::size_t k = 0; k < samples.states.size(); ++k)
+      samples.states[k].push_back(responses_[i].state[k]);
   }
 }
 

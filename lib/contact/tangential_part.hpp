@@ -1,6 +1,7 @@
 // Friction of one contact pair: owned by its ContactForm, and only by one with friction.
 #pragma once
 
+#include "contact/contact_history.hpp"
 #include "contact/contact_pair.hpp"
 #include "contact/contact_points.hpp"
 #include "contact/contact_samples.hpp"
@@ -24,7 +25,8 @@ struct TangentialSums {
   double stick_area = 0.0, slip_area = 0.0;
   double dissipation = 0.0; // ∫ σ_t · slip over the increment, >= 0
   double work = 0.0;        // ∫ σ_t · (u_slave − u_master), a rigid master's motion not included
-  double path_error = 0.0;  // see TangentialPart::sums
+  double mismatch = 0.0;    // see TangentialPart::sums
+  double change = 0.0;      // Σ ½ |Δσ_t · Δg_t|
 };
 
 class TangentialPart {
@@ -54,6 +56,9 @@ class TangentialPart {
 
   void commit(const State& state);
   void roll_back();
+  /// Adds what was last accepted to the pair's history, and makes a history the last accepted one.
+  void save(ContactHistory& history) const;
+  void restore(const ContactHistory& history);
 
   /// Cartesian components of λ_t at the pair's multiplier nodes: traction.
   const std::vector<std::vector<double>>& multipliers() const { return multipliers_; }
@@ -62,29 +67,22 @@ class TangentialPart {
   std::vector<std::vector<double>> multiplier_defect() const;
 
   TangentialSums sums() const;
-  /// Potential (elastic energy of the penalty springs) on this rank; zero with multipliers.
+  /// Potential (|σ_t|² − |λ_t|²) / (2 ε) on this rank, of penalty springs |σ_t|² / (2 ε), at the last evaluation.
   double stored_energy() const;
   /// Fills in what friction adds to the samples of the pair's points.
   void sample(ContactSamples& samples) const;
 
  private:
-  /// A point as of the last accepted state.
-  struct History {
-    TangentVector traction{};
-    std::array<double, 3> jump{}; // u_slave − u_master − rigid shift
-    FrictionState state{};
-    double slip = 0.0; // accumulated over all contacts of the point
-    bool open = true;
-  };
   bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
   bool has_multipliers() const { return !std::holds_alternative<Penalty>(pair_.enforcement); }
-  TangentVector multiplier_increment(const ContactPoint& point) const;
+  TangentVector carried(std::size_t i) const;
   void fetch_multipliers(const State& state);
   void find_factors(double time);
   void jump_variation(const ContactPoint& point, const ContactBlock& layout, std::span<double> motion) const;
   void trial_tangent(std::size_t i, const ContactBlock& layout, bool guess_stick, std::span<const double> motion,
                      std::span<double> response) const;
-  double spring_energy(const TangentVector& traction, double epsilon) const;
+  double spring_energy(std::size_t i, const TangentVector& traction,
+                       const std::vector<std::vector<double>>& multipliers) const;
 
   const DofLayout& layout_;
   const ContactPair& pair_;
@@ -93,14 +91,14 @@ class TangentialPart {
   std::span<const std::int32_t> position_;
   double scale_;
   std::vector<std::vector<double>> multipliers_, multipliers_old_; // [component][node]
-  std::vector<History> history_;
+  std::vector<PointHistory> history_;
   double accepted_time_ = 0.0, factor_time_ = -1.0;
   std::vector<double> factor_;
   // At the last evaluation, per point:
   std::vector<FrictionContext> contexts_;
   std::vector<FrictionResponse> responses_;
-  std::vector<std::array<double, 3>> jump_; // u_slave − u_master − rigid shift
-  std::vector<TangentVector> increment_;    // Δg_t
+  std::vector<std::array<double, 3>> jump_;   // u_slave − u_master − rigid shift
+  std::vector<std::array<double, 3>> motion_; // jump less that of the last accepted state
   std::vector<std::uint8_t> active_, pressed_, assembled_status_;
   VecHandle local_multipliers_;
   ScatterHandle multiplier_scatter_;

@@ -39,7 +39,7 @@ bool uses_name(const std::string& text, const std::string& name) {
 
 bool is_expression(const std::string& text, const std::map<std::string, double>& constants) {
   try {
-    Expression(text, constants);
+    const Expression compiled(text, constants);
     return true;
   } catch (const UserError&) {
     return false;

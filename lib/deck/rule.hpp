@@ -281,7 +281,11 @@ class ObjectRule {
                   bool is_required) {
     using M = std::remove_reference_t<std::invoke_result_t<Member, T&>>;
     const Rule<M> bound = lifted<M>(plain(rule));
-    Entry entry{.name = name, .sentence = std::move(sentence), .citation = std::move(citation), .shape = bound.shape};
+    Entry entry;
+    entry.name = name;
+    entry.sentence = std::move(sentence);
+    entry.citation = std::move(citation);
+    entry.shape = bound.shape;
     entry.required = is_required;
     if (!is_required) {
       const auto json = bound.show(std::invoke(member, *fresh_));
@@ -330,10 +334,11 @@ class TaggedRule {
       const auto* alternative = std::get_if<A>(&value);
       return alternative ? json_object({json_pair(name, rule.show(*alternative))}) : "";
     });
-    shape_.entries.push_back({.name = std::move(name),
-                              .sentence = std::move(sentence),
-                              .citation = std::move(citation),
-                              .shape = rule.shape});
+    auto& entry = shape_.entries.emplace_back();
+    entry.name = std::move(name);
+    entry.sentence = std::move(sentence);
+    entry.citation = std::move(citation);
+    entry.shape = rule.shape;
     return *this;
   }
   template <class A>

@@ -105,6 +105,14 @@ void DofLayout::gather_displacement(Vec global, std::span<double> local) const {
   std::copy(values.data(), values.data() + values.size(), local.begin());
 }
 
+void DofLayout::put_displacement(std::span<const double> local, Vec global) const {
+  VecArray values(global);
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    const PetscInt owned = equations_[i] - first_equation_;
+    if (owned >= 0 && owned < num_owned_) values[owned] = local[i];
+  }
+}
+
 void DofLayout::add_forces(std::span<const double> local, Vec global) const {
   {
     VecArray values(local_);

@@ -62,6 +62,8 @@ class DofLayout {
   VecHandle new_vector() const;
   /// Displacement of all local nodes (num_local x dim) from a global vector, ties and ghosts included. Collective.
   void gather_displacement(Vec global, std::span<double> local) const;
+  /// The opposite: writes what gather_displacement gave into the equations of this rank.
+  void put_displacement(std::span<const double> local, Vec global) const;
   /// Adds a local array (num_local x dim) of nodal forces into a global vector: sums over ranks and tied groups.
   /// Collective.
   void add_forces(std::span<const double> local, Vec global) const;

@@ -64,7 +64,8 @@ struct Batch {
 constexpr int most_bubble_steps = 25;
 constexpr double bubble_tolerance = 1e-10; // change of β relative to the displacements within the cell
 
-/// One Newton step for the bubble of cell c of a batch. True when it was a small one.
+/// One Newton step for the bubble of cell c of a batch. True when it was a small one. (Strains are changed in place, so
+/// rounding in those of the nodes does not come back as a change of β.)
 template <class Kernel>
 bool improve_bubble(const Material& material, std::size_t c, Batch<Kernel>& batch) {
   constexpr int dim = Kernel::dim, first = Kernel::node_unknowns;

@@ -49,7 +49,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <type_traits>
 
 namespace amontons {
 
@@ -531,39 +530,37 @@ struct CellKernel {
   }
 };
 
+/// Calls work(kernel) with the kernel of a plane or axisymmetric element.
+template <int nodes, Dilatation dilatation, class Work>
+void with_plane_kernel(Space space, Work&& work) {
+  if (space == Space::Axisymmetric)
+    work(CellKernel<2, nodes, true, dilatation>{});
+  else if (space == Space::PlaneStrain)
+    work(CellKernel<2, nodes, false, dilatation>{});
+  else
+    work(CellKernel<2, nodes, false, Dilatation::Pointwise>{});
+}
+
 /// Calls work(kernel) with the kernel of this element in this space: the one place that lists them all.
 template <class Work>
 void with_kernel(ElementType type, Space space, Work&& work) {
-  const auto plane = [&]<int nodes, Dilatation dilatation>(std::integral_constant<int, nodes>,
-                                                           std::integral_constant<Dilatation, dilatation>) {
-    if (space == Space::Axisymmetric)
-      work(CellKernel<2, nodes, true, dilatation>{});
-    else if (space == Space::PlaneStrain)
-      work(CellKernel<2, nodes, false, dilatation>{});
-    else
-      work(CellKernel<2, nodes, false, Dilatation::Pointwise>{});
-  };
-  constexpr std::integral_constant<Dilatation, Dilatation::Pointwise> pointwise;
-  constexpr std::integral_constant<Dilatation, Dilatation::ConstantMean> constant;
-  constexpr std::integral_constant<Dilatation, Dilatation::LinearMean> linear;
-  constexpr std::integral_constant<Dilatation, Dilatation::Bubble> bubble;
   switch (type) {
   case ElementType::Triangle3:
-    return plane(std::integral_constant<int, 3>{}, pointwise);
+    return with_plane_kernel<3, Dilatation::Pointwise>(space, work);
   case ElementType::Triangle6:
-    return plane(std::integral_constant<int, 6>{}, bubble);
+    return with_plane_kernel<6, Dilatation::Bubble>(space, work);
   case ElementType::Quadrilateral4:
-    return plane(std::integral_constant<int, 4>{}, constant);
+    return with_plane_kernel<4, Dilatation::ConstantMean>(space, work);
   case ElementType::Quadrilateral9:
-    return plane(std::integral_constant<int, 9>{}, linear);
+    return with_plane_kernel<9, Dilatation::LinearMean>(space, work);
   case ElementType::Tetrahedron4:
-    return work(CellKernel<3, 4, false, pointwise>{});
+    return work(CellKernel<3, 4, false, Dilatation::Pointwise>{});
   case ElementType::Tetrahedron10:
-    return work(CellKernel<3, 10, false, bubble>{});
+    return work(CellKernel<3, 10, false, Dilatation::Bubble>{});
   case ElementType::Hexahedron8:
-    return work(CellKernel<3, 8, false, constant>{});
+    return work(CellKernel<3, 8, false, Dilatation::ConstantMean>{});
   case ElementType::Hexahedron27:
-    return work(CellKernel<3, 27, false, linear>{});
+    return work(CellKernel<3, 27, false, Dilatation::LinearMean>{});
   default:
     return; // segments are no cells
   }

@@ -4,6 +4,7 @@
 
 #include "fe/dof_layout.hpp"
 
+#include <any>
 #include <span>
 #include <vector>
 
@@ -86,6 +87,10 @@ class Form {
   /// Accepts the state as the start of the next increment, or goes back to the last accepted one.
   virtual void commit(const State&) {}
   virtual void roll_back() {}
+  /// A copy of all that commit() changes, empty for a form without history; and the way back to it, from whatever has
+  /// been tried or accepted since.
+  virtual std::any history() const { return {}; }
+  virtual void restore(const std::any&) {}
 
   /// Energy stored by this form on this rank.
   virtual double stored_energy(const State&) { return 0.0; }

@@ -114,6 +114,31 @@ void Problem::roll_back() {
     form->roll_back();
 }
 
+Problem::Snapshot Problem::snapshot() const {
+  Snapshot snapshot{.time = accepted_time_, .largest_force = largest_accepted_force_, .histories = {}};
+  for (const auto& form : forms_)
+    snapshot.histories.push_back(form->history());
+  return snapshot;
+}
+
+void Problem::restore(const Snapshot& snapshot) {
+  resume(snapshot.time, snapshot.largest_force);
+  for (std::size_t i = 0; i < forms_.size(); ++i)
+    if (snapshot.histories[i].has_value()) forms_[i]->restore(snapshot.histories[i]);
+}
+
+void Problem::resume(double time, double largest_force) {
+  time_ = accepted_time_ = time;
+  largest_accepted_force_ = largest_force;
+}
+
+void Problem::revisit(double time, Vec unknowns) {
+  time_ = time;
+  first_guess_ = false;
+  const auto result = layout_.new_vector();
+  residual(unknowns, result);
+}
+
 State Problem::state_at(Vec unknowns) {
   layout_.gather_displacement(unknowns, displacement_);
   return {.time = time_, .unknowns = unknowns, .displacement = displacement_, .first_guess = first_guess_};

@@ -37,6 +37,23 @@ class Problem {
   /// keeps the unknowns). Collective.
   void commit(Vec unknowns);
   void roll_back();
+
+  /// What commit() changes: to go back over more than one accepted state.
+  struct Snapshot {
+    double time = 0.0, largest_force = 0.0;
+    std::vector<std::any> histories; // one a form
+  };
+  Snapshot snapshot() const;
+  /// Makes the snapshot the last accepted state (the caller keeps the unknowns).
+  void restore(const Snapshot& snapshot);
+  /// Goes on from a checkpoint: the accepted time, and largest_force() of the run that wrote it. The histories of the
+  /// forms have been restored one by one.
+  void resume(double time, double largest_force);
+  double largest_force() const { return largest_accepted_force_; }
+  /// Puts a state in place that was solved before as the end of an increment from the last accepted state, and
+  /// evaluates its residual. Collective.
+  void revisit(double time, Vec unknowns);
+
   double time() const { return time_; }
   /// Time of the last accepted state.
   double accepted_time() const { return accepted_time_; }

@@ -29,18 +29,19 @@ PiolaTangent piola_tangent(const LogStrain& strain, const Tensor& T, const FlowM
   PiolaTangent local;
   for (int k = 0; k < 3; ++k)
     for (int l = 0; l < 3; ++l) {
-      Tensor spin = Tensor::Zero(), dU = Tensor::Zero(), dE = Tensor::Zero();
+      Tensor spin = Tensor::Zero(), d_stretch = Tensor::Zero(), d_strain = Tensor::Zero();
       const double sum = stretch[k] + stretch[l];
       if (k != l) {
         spin(k, l) = 1 / sum;
         spin(l, k) = -1 / sum;
       }
-      dU(k, l) = dU(l, k) = k == l ? 1 : stretch[k] / sum;
-      dE(k, l) = dE(l, k) = dU(k, l) * log_quotient(stretch[k], stretch[l]);
-      const Tensor dT = moduli.bulk * dE.trace() * Tensor::Identity() + moduli.shear * deviator(dE) -
-                        moduli.drop * contract(flow, dE) * flow;
-      const Tensor dQ = (spin * stress + dT - stress * inverse.asDiagonal() * dU) * inverse.asDiagonal();
-      local.col(3 * k + l) = flat(dQ);
+      d_stretch(k, l) = d_stretch(l, k) = k == l ? 1 : stretch[k] / sum;
+      d_strain(k, l) = d_strain(l, k) = d_stretch(k, l) * log_quotient(stretch[k], stretch[l]);
+      const Tensor d_stress = moduli.bulk * d_strain.trace() * Tensor::Identity() + moduli.shear * deviator(d_strain) -
+                              moduli.drop * contract(flow, d_strain) * flow;
+      const Tensor d_piola =
+          (spin * stress + d_stress - stress * inverse.asDiagonal() * d_stretch) * inverse.asDiagonal();
+      local.col(3 * k + l) = flat(d_piola);
     }
   const Tensor n = strain.F * strain.inverse_stretch * N, m = G * N;
   PiolaTangent turn; // column 3 a + b: n_a m_b^T

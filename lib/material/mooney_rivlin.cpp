@@ -12,7 +12,7 @@ namespace {
 struct Parts {
   Tensor A, C, B;
   double I1, I2, J;
-  Tensor dI1, dI2; // ∂Ī1/∂F and ∂Ī2/∂F without their factors J^(-2/3), J^(-4/3)
+  Tensor first_slope, second_slope; // ∂Ī1/∂F and ∂Ī2/∂F without their factors J^(-2/3), J^(-4/3)
 };
 
 Parts parts(const Tensor& F) {
@@ -23,8 +23,8 @@ Parts parts(const Tensor& F) {
   p.I2 = 0.5 * (p.I1 * p.I1 - p.C.squaredNorm());
   p.B = p.I1 * F - F * p.C;
   p.J = F.determinant();
-  p.dI1 = 2 * F - 2.0 / 3 * p.I1 * p.A;
-  p.dI2 = 2 * p.B - 4.0 / 3 * p.I2 * p.A;
+  p.first_slope = 2 * F - 2.0 / 3 * p.I1 * p.A;
+  p.second_slope = 2 * p.B - 4.0 / 3 * p.I2 * p.A;
   return p;
 }
 
@@ -36,25 +36,25 @@ double MooneyRivlin::energy(const Tensor& F) const {
   const double second = 2 * trace + 0.5 * (trace * trace - c.squaredNorm()), I2 = 3 + second; // I2 − 3
   const double first_bar = I1 * std::expm1(-2.0 / 3 * log_ratio) + trace;
   const double second_bar = I2 * std::expm1(-4.0 / 3 * log_ratio) + second;
-  return C10 * first_bar + C01 * second_bar + K / 4 * (std::expm1(2 * log_ratio) - 2 * log_ratio);
+  return C_10 * first_bar + C_01 * second_bar + K / 4 * (std::expm1(2 * log_ratio) - 2 * log_ratio);
 }
 
 Tensor MooneyRivlin::piola(const Tensor& F) const {
   const Parts p = parts(F);
-  const double a = C10 * std::pow(p.J, -2.0 / 3), b = C01 * std::pow(p.J, -4.0 / 3);
-  return a * p.dI1 + b * p.dI2 + 0.5 * K * std::expm1(2 * small_invariants(F).log_ratio) * p.A;
+  const double a = C_10 * std::pow(p.J, -2.0 / 3), b = C_01 * std::pow(p.J, -4.0 / 3);
+  return a * p.first_slope + b * p.second_slope + 0.5 * K * std::expm1(2 * small_invariants(F).log_ratio) * p.A;
 }
 
 PiolaTangent MooneyRivlin::tangent(const Tensor& F) const {
   const Parts p = parts(F);
-  const double a = C10 * std::pow(p.J, -2.0 / 3), b = C01 * std::pow(p.J, -4.0 / 3), square = p.J * p.J;
+  const double a = C_10 * std::pow(p.J, -2.0 / 3), b = C_01 * std::pow(p.J, -4.0 / 3), square = p.J * p.J;
   PiolaTangent tangent = 2 * a * PiolaTangent::Identity();
   // a ∂Ī1/∂F
-  add_dyad(tangent, -2.0 / 3 * a, p.dI1, p.A);
+  add_dyad(tangent, -2.0 / 3 * a, p.first_slope, p.A);
   add_dyad(tangent, -4.0 / 3 * a, p.A, F);
   add_transposed(tangent, 2.0 / 3 * a * p.I1, p.A, p.A);
   // b ∂Ī2/∂F; dB = 2 F (F : dF) + I1 dF − dF C − F dF^T F − F F^T dF
-  add_dyad(tangent, -4.0 / 3 * b, p.dI2, p.A);
+  add_dyad(tangent, -4.0 / 3 * b, p.second_slope, p.A);
   add_dyad(tangent, 4 * b, F, F);
   add_right(tangent, 2 * b, p.I1 * Tensor::Identity() - p.C);
   add_transposed(tangent, -2 * b, F, F);
@@ -68,15 +68,15 @@ PiolaTangent MooneyRivlin::tangent(const Tensor& F) const {
 }
 
 Lame MooneyRivlin::lame() const {
-  const double G = 2 * (C10 + C01);
+  const double G = 2 * (C_10 + C_01);
   return {K - 2.0 / 3 * G, G};
 }
 
 Rule<MooneyRivlin> mooney_rivlin_rule() {
   using Law = MooneyRivlin;
   return ObjectRule<Law>()
-      .required("C10", &Law::C10, number("stress", Range::above(0)), "Coefficient of the first invariant.")
-      .optional("C01", &Law::C01, number("stress", Range::at_least(0)), "Coefficient of the second invariant.")
+      .required("C10", &Law::C_10, number("stress", Range::above(0)), "Coefficient of the first invariant.")
+      .optional("C01", &Law::C_01, number("stress", Range::at_least(0)), "Coefficient of the second invariant.")
       .required("K", &Law::K, number("stress", Range::above(0)),
                 "Bulk modulus; 1000 times C10 + C01 is nearly incompressible.");
 }

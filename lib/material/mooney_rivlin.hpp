@@ -13,9 +13,9 @@ namespace amontons {
 /// M. Mooney, J. Appl. Phys. 11 (1940) 582-592; R. S. Rivlin, Phil. Trans. R. Soc. A 241 (1948) 379-397; U: J. C. Simo,
 /// T. J. R. Hughes, Computational Inelasticity (1998), ch. 9.
 struct MooneyRivlin {
-  double C10 = 1.0; // stress, > 0
-  double C01 = 0.0; // stress, >= 0
-  double K = 1.0;   // bulk modulus, stress, > 0
+  double C_10 = 1.0; // stress, > 0
+  double C_01 = 0.0; // stress, >= 0
+  double K = 1.0;    // bulk modulus, stress, > 0
 
   double energy(const Tensor& F) const;
   Tensor piola(const Tensor& F) const;

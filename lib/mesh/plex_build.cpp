@@ -77,9 +77,9 @@ void cell_corners(const RawMesh& raw, std::int64_t cell, const std::vector<Petsc
 /// Cells and vertices, without edges and faces yet. Local.
 void set_cells(DM dm, const RawMesh& raw, const std::vector<PetscInt>& vertices) {
   const auto num_cells = static_cast<PetscInt>(raw.num_cells());
-  const auto num_vertices_ =
+  const auto num_corners =
       static_cast<PetscInt>(std::count_if(vertices.begin(), vertices.end(), [](PetscInt v) { return v >= 0; }));
-  AMT_PETSC(DMPlexSetChart(dm, 0, num_cells + num_vertices_));
+  AMT_PETSC(DMPlexSetChart(dm, 0, num_cells + num_corners));
   for (PetscInt cell = 0; cell < num_cells; ++cell)
     AMT_PETSC(DMPlexSetConeSize(dm, cell, num_vertices(raw.cell_types[cell])));
   AMT_PETSC(DMSetUp(dm));
@@ -91,7 +91,7 @@ void set_cells(DM dm, const RawMesh& raw, const std::vector<PetscInt>& vertices)
     AMT_PETSC(DMPlexSetCone(dm, cell, corners.data()));
     AMT_PETSC(DMPlexSetCellType(dm, cell, shape));
   }
-  for (PetscInt vertex = num_cells; vertex < num_cells + num_vertices_; ++vertex)
+  for (PetscInt vertex = num_cells; vertex < num_cells + num_corners; ++vertex)
     AMT_PETSC(DMPlexSetCellType(dm, vertex, DM_POLYTOPE_POINT));
 }
 

@@ -1,6 +1,7 @@
 #include "output/checkpoint.hpp"
 
 #include "base/error.hpp"
+#include "mesh/topology.hpp"
 #include "output/hdf5_file.hpp"
 #include "output/key_match.hpp"
 #include "output/text_file.hpp"
@@ -13,7 +14,7 @@ namespace amontons {
 
 namespace {
 
-constexpr std::int64_t format_version = 1;
+constexpr std::int64_t format_version = 2;
 const std::string root = "/checkpoint";
 
 /// FNV-1a: enough to tell two decks apart, and the same on every machine.
@@ -50,10 +51,48 @@ std::vector<std::uint64_t> joined(std::span<const double> values) {
   return keys;
 }
 
+/// A name of each facet on this rank that depends on nothing but the keys of its corners.
+std::vector<std::uint64_t> facet_keys(const Mesh& mesh, const FacetSet& facets) {
+  std::vector<std::uint64_t> names;
+  for (std::int32_t f = 0; f < facets.size(); ++f) {
+    std::vector<std::int64_t> corners;
+    for (int a = 0; a < num_vertices(facets.types[f]); ++a)
+      corners.push_back(static_cast<std::int64_t>(mesh.keys[facets.facet(f)[a]]));
+    names.push_back(CornerSetHash{}(corner_set<4>(corners)));
+  }
+  return names;
+}
+
+std::int64_t sum_over_ranks(MPI_Comm comm, std::int64_t mine) {
+  std::int64_t sum = 0;
+  MPI_Allreduce(&mine, &sum, 1, MPI_INT64_T, MPI_SUM, comm);
+  return sum;
+}
+
 std::string dataset(const char* kind, std::size_t i) { return root + "/" + kind + "_" + std::to_string(i); }
 /// Attributes that belong to dataset i: "nodal_0_name", "nodal_0_components" ...
 std::string attribute(const char* kind, std::size_t i, const char* what) {
   return std::string(kind) + "_" + std::to_string(i) + "_" + what;
+}
+
+/// Facet arrays: keys and numbers of rows, facet by facet, and the rows themselves.
+void write_facets(Hdf5File& file, const Mesh& mesh, const Checkpoint& checkpoint) {
+  file.write_attribute(root, "facet_count", std::int64_t(checkpoint.facets.size()));
+  std::size_t i = 0;
+  for (const auto& [name, array] : checkpoint.facets) {
+    const auto keys = facet_keys(mesh, mesh.surfaces.at(array.surface));
+    file.write_attribute(root, attribute("facet", i, "name"), name);
+    file.write_attribute(root, attribute("facet", i, "surface"), array.surface);
+    file.write_attribute(root, attribute("facet", i, "components"), std::int64_t(array.components));
+    file.write_attribute(root, attribute("facet", i, "facets"),
+                         sum_over_ranks(mesh.comm, static_cast<std::int64_t>(keys.size())));
+    file.write_attribute(root, attribute("facet", i, "rows"),
+                         sum_over_ranks(mesh.comm, static_cast<std::int64_t>(array.values.size()) / array.components));
+    file.write(dataset("facet_keys", i), 2, halves(keys));
+    file.write(dataset("facet_rows", i), 1, std::vector<double>(array.rows.begin(), array.rows.end()));
+    file.write(dataset("facet", i), array.components, array.values);
+    ++i;
+  }
 }
 
 void write_contents(Hdf5File& file, const Mesh& mesh, const std::string& identity, const Checkpoint& checkpoint) {
@@ -76,6 +115,7 @@ void write_contents(Hdf5File& file, const Mesh& mesh, const std::string& identit
     file.write(dataset("nodal", i), array.components, std::span(array.values).first(owned * array.components));
     ++i;
   }
+  write_facets(file, mesh, checkpoint);
 
   int rank = 0;
   MPI_Comm_rank(mesh.comm, &rank);
@@ -161,6 +201,53 @@ void read_nodal(Hdf5File& file, const Mesh& mesh, const std::string& path, Check
   }
 }
 
+/// First row and number of rows in the file of each wanted facet (rows of the facet tables). Collective.
+std::vector<double> row_ranges(MPI_Comm comm, const std::vector<double>& rows_in_file,
+                               std::span<const PetscInt> wanted) {
+  double mine = std::accumulate(rows_in_file.begin(), rows_in_file.end(), 0.0), first = 0.0;
+  MPI_Exscan(&mine, &first, 1, MPI_DOUBLE, MPI_SUM, comm);
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  if (rank == 0) first = 0.0; // MPI leaves it undefined there
+  std::vector<double> ranges;
+  for (const double rows : rows_in_file) {
+    ranges.insert(ranges.end(), {first, rows});
+    first += rows;
+  }
+  return picked(comm, 2, std::move(ranges), wanted);
+}
+
+void read_facets(Hdf5File& file, const Mesh& mesh, const std::string& path, Checkpoint& checkpoint) {
+  const auto count = static_cast<std::size_t>(file.read_integer(root, "facet_count"));
+  for (std::size_t i = 0; i < count; ++i) {
+    FacetArray array;
+    array.surface = file.read_string(root, attribute("facet", i, "surface"));
+    array.components = static_cast<int>(file.read_integer(root, attribute("facet", i, "components")));
+    const Share share = even_share(mesh.comm, file.read_integer(root, attribute("facet", i, "facets")));
+    const Share rows = even_share(mesh.comm, file.read_integer(root, attribute("facet", i, "rows")));
+    const auto keys = joined(file.read(dataset("facet_keys", i), 2 * share.size));
+    const auto rows_in_file = file.read(dataset("facet_rows", i), share.size);
+    auto in_file = file.read(dataset("facet", i), array.components * rows.size);
+    const auto surface = mesh.surfaces.find(array.surface);
+    const FacetSet none;
+    const auto found = rows_of_keys(mesh.comm, keys, share.first,
+                                    facet_keys(mesh, surface == mesh.surfaces.end() ? none : surface->second));
+    together(mesh.comm, [&] {
+      if (surface == mesh.surfaces.end() || std::find(found.begin(), found.end(), -1) != found.end())
+        refuse(path, "its surface '" + array.surface + "' is not that of this mesh");
+    });
+    const auto ranges = row_ranges(mesh.comm, rows_in_file, std::vector<PetscInt>(found.begin(), found.end()));
+    std::vector<PetscInt> wanted;
+    for (std::size_t f = 0; f < found.size(); ++f) {
+      array.rows.push_back(static_cast<std::int32_t>(ranges[2 * f + 1]));
+      for (std::int32_t row = 0; row < array.rows.back(); ++row)
+        wanted.push_back(static_cast<PetscInt>(ranges[2 * f]) + row);
+    }
+    array.values = picked(mesh.comm, array.components, std::move(in_file), wanted);
+    checkpoint.facets[file.read_string(root, attribute("facet", i, "name"))] = std::move(array);
+  }
+}
+
 void read_global(Hdf5File& file, MPI_Comm comm, Checkpoint& checkpoint) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
@@ -203,6 +290,7 @@ Checkpoint read_checkpoint(const Mesh& mesh, const std::string& path, const std:
   checkpoint.increment = static_cast<int>(file.read_integer(root, "increment"));
   checkpoint.next_increment = file.read_double(root, "next_increment");
   read_nodal(file, mesh, path, checkpoint);
+  read_facets(file, mesh, path, checkpoint);
   read_global(file, mesh.comm, checkpoint);
   file.finish();
   return checkpoint;

@@ -1,5 +1,5 @@
 // checkpoint.h5: everything a run needs to go on, on any number of ranks. Nodal values are found again by Mesh::keys,
-// which do not depend on the partition.
+// which do not depend on the partition, values on facets by the keys of the facet's corners.
 #pragma once
 
 #include "mesh/mesh.hpp"
@@ -16,6 +16,16 @@ struct NodalArray {
   std::vector<double> values; // num_local() x components; ghosts included
 };
 
+/// Rows of numbers on the facets of a surface, as many on each as it likes (one a quadrature point, say). The order of
+/// a facet's nodes may be another after a restart, and with it that of its points: a row must say by itself what it
+/// belongs to.
+struct FacetArray {
+  std::string surface; // name in Mesh::surfaces
+  int components = 1;
+  std::vector<std::int32_t> rows; // per facet of this rank
+  std::vector<double> values;     // facet by facet: sum of rows x components
+};
+
 struct Checkpoint {
   double time = 0.0;
   int step = 0;                // index of the deck's step that the accepted state belongs to
@@ -24,6 +34,7 @@ struct Checkpoint {
   /// Numbers known to all ranks alike.
   std::map<std::string, std::vector<double>> global;
   std::map<std::string, NodalArray> nodal;
+  std::map<std::string, FacetArray> facets;
 };
 
 /// Writes the checkpoint of a run on `mesh` to `path`, beside an older one until it is complete, then in its place: an

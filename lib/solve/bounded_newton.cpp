@@ -9,8 +9,6 @@ namespace amontons {
 
 namespace {
 
-/// Iterations that take their full step without asking whether the energy falls: nearly all solves end within them.
-constexpr PetscInt free_iterations = 12;
 constexpr int most_halvings = 30;
 /// Part of the promised fall of energy that a shortened step must bring (Armijo).
 constexpr double least_fall = 1e-4;
@@ -41,6 +39,7 @@ BoundedNewton::BoundedNewton(Problem& problem, BoundedUnknowns& bounds, std::fun
       residual_(problem.layout().new_vector()), changed_residual_(problem.layout().new_vector()),
       upper_(problem.layout().new_vector()), forces_(problem.layout().new_vector()) {
   AMT_PETSC(VecSet(upper_, PETSC_INFINITY));
+  AMT_PETSC(PetscOptionsGetInt(nullptr, nullptr, "-vi_free_iterations", &free_iterations_, nullptr));
   AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
   AMT_PETSC(SNESSetType(snes_, SNESVINEWTONRSLS));
   AMT_PETSC(SNESSetFunction(snes_, changed_residual_, evaluate_residual, this));
@@ -175,7 +174,7 @@ void BoundedNewton::descend(SNESLineSearch search) {
   };
   double length = 1.0;
   take(length);
-  for (int halving = 0; iteration >= free_iterations && !energy_falls(); ++halving) {
+  for (int halving = 0; iteration >= free_iterations_ && !energy_falls(); ++halving) {
     length = halving < most_halvings ? 0.5 * length : 1.0; // no descent within rounding: Newton knows better
     take(length);
     if (length == 1.0) break;

@@ -49,6 +49,9 @@ class BoundedNewton {
   VecHandle unknowns_, changed_, residual_, changed_residual_, upper_, forces_;
   std::unique_ptr<WholePreconditioner> preconditioner_;
   std::exception_ptr kept_;
+  /// Iterations that take their full step without asking whether the energy falls (-vi_free_iterations): nearly all
+  /// solves end within them.
+  PetscInt free_iterations_ = 12;
 };
 
 } // namespace amontons

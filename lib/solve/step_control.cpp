@@ -28,7 +28,7 @@ double StepControl::target() const {
   return now_ + increment_;
 }
 
-void StepControl::accepted(int newton_iterations) {
+void StepControl::accepted(int newton_iterations, double limit) {
   const double reached = target();
   const double taken = reached - now_;
   now_ = reached;
@@ -38,6 +38,7 @@ void StepControl::accepted(int newton_iterations) {
     const double ratio = static_cast<double>(plan_.target_iterations) / std::max(1, newton_iterations);
     factor = std::clamp(std::sqrt(ratio), 0.5, 2.0);
   }
+  factor = std::min(factor, limit);
   // A short increment that only landed on a stop does not shrink the next one.
   increment_ = std::clamp(std::max(taken * factor, std::min(increment_, increment_ * factor)), smallest_, largest_);
 }
@@ -45,6 +46,13 @@ void StepControl::accepted(int newton_iterations) {
 bool StepControl::rejected() {
   increment_ = 0.5 * (target() - now_);
   return increment_ >= smallest_;
+}
+
+bool StepControl::shortened(double factor) {
+  const double tried = target() - now_;
+  if (tried <= smallest_ * (1.0 + 1e-9)) return false;
+  increment_ = std::max(factor * tried, smallest_);
+  return true;
 }
 
 } // namespace amontons

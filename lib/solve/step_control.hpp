@@ -24,10 +24,14 @@ class StepControl {
   bool finished() const { return next_stop_ >= stops_.size(); }
   /// The end of the increment to try; not when finished(), nor accepted() and rejected().
   double target() const;
-  /// The increment to target() was solved in this many Newton iterations.
-  void accepted(int newton_iterations);
+  /// The increment to target() was solved in this many Newton iterations; the next one is at most `limit` times as
+  /// long.
+  void accepted(int newton_iterations, double limit = 2.0);
   /// It was not: tries half of it next. False when the increment is too small to go on.
   [[nodiscard]] bool rejected();
+  /// It was, but a shorter one is wanted: tries `factor` of it next, not less than the smallest. False, and nothing
+  /// changes, when it is at the smallest already.
+  [[nodiscard]] bool shortened(double factor);
   double now() const { return now_; }
   double increment() const { return increment_; }
 

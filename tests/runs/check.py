@@ -15,6 +15,7 @@ from pathlib import Path
 import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scenes"))
+from friction_runs import path_control, restart_of_friction  # noqa: E402
 from harness import TOP, load_deck, set_key  # noqa: E402
 
 HERTZ = "hertz_2d"
@@ -36,6 +37,9 @@ class Case:
         deck["mesh"]["file"] = str((TOP / "inputs" / HERTZ / deck["mesh"]["file"]).resolve())
         for path, value in {**CHEAP, **(changes or {})}.items():
             set_key(deck, path, value)
+        return self.write(deck, name)
+
+    def write(self, deck, name):
         path = self.folder / f"{name}.yaml"
         path.write_text(yaml.safe_dump(deck, sort_keys=False), encoding="utf-8")
         return path
@@ -70,7 +74,7 @@ def same(a, b, tolerance=1e-8):
 
 def restart(case):
     """Half of a run on one rank, the other half on two, equals the whole; for held and unknown multipliers."""
-    for enforce in ({"semismooth": {}}, {"uzawa": {}}):
+    for enforce in ({"semismooth": {}}, {"uzawa": {}}, {"vi": {}}):
         name = next(iter(enforce))
         whole, parts = case.folder / f"whole_{name}", case.folder / f"parts_{name}"
         deck = case.deck({"contact.0.enforce": enforce}, name)
@@ -168,7 +172,14 @@ def cutback(case):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    cases = {"restart": restart, "interrupt": interrupt, "statuses": statuses, "cutback": cutback}
+    cases = {
+        "restart": restart,
+        "restart_of_friction": restart_of_friction,
+        "path_control": path_control,
+        "interrupt": interrupt,
+        "statuses": statuses,
+        "cutback": cutback,
+    }
     parser.add_argument("case", choices=cases)
     parser.add_argument("--program", required=True)
     parser.add_argument("--mpirun", nargs="+", default=["mpirun", "--oversubscribe", "--bind-to", "none"])

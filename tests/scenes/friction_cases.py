@@ -116,9 +116,9 @@ class PushedSphere:
         return abs(np.trapz(self.force[rows], self.moved[rows])), dissipated
 
 
-def mindlin_cycling(bench, changes=None, tolerance=0.05):
+def mindlin_cycling(bench):
     """Two cycles against Mindlin and Deresiewicz for the measured forces."""
-    results = bench.run("mindlin_sphere_cycling", changes)
+    results = bench.run("mindlin_sphere_cycling")
     sphere = PushedSphere(results)
     at = {t: sphere.between(t, t)[0] for t in (2, 4, 6)}
     amplitude, normal = 0.5 * (sphere.force[at[6]] - sphere.force[at[4]]), sphere.normal[-1]
@@ -127,7 +127,7 @@ def mindlin_cycling(bench, changes=None, tolerance=0.05):
     first, second = sphere.loop(2, 6), sphere.loop(6, 10)
     label = f"Q*/(mu P) = {abs(amplitude) / (MU * normal):.3f}"
     bench.close(f"{label}: area of the second loop", second[0],
-                references.mindlin_loop_energy(abs(amplitude), *arguments), tolerance)
+                references.mindlin_loop_energy(abs(amplitude), *arguments), 0.05)
     bench.close(f"{label}: displacement at Q*", sphere.amplitude,
                 references.mindlin_displacement(abs(amplitude), *arguments), 0.03)
     difference = np.abs(sphere.force[sphere.between(2, 6)] - sphere.force[sphere.between(6, 10)]).max()
@@ -227,12 +227,25 @@ def press_shear_path(bench):
         bench.below(f"{name}: distance of 1/30 over that of 1/10", errors[2] / errors[1], 0.31)
 
 
+def press_shear_path_control(bench):
+    """A path tolerance for each step is kept, against the fine path, in fewer increments than that has; and the run's own
+    estimate is not below its distance."""
+    fine = press_and_shift(bench, 100, 100)
+    for tolerance in (0.05, 0.02):
+        auto = {"auto": {"first": 0.1, "path_tolerance": tolerance}}
+        results = press_and_shift(bench, auto, auto)
+        distances = [path_distance(results, fine, time) for time in (1.0, 2.0)]
+        said = results.summary["path"]["estimated_error"]
+        print(f"     tolerance {tolerance}: {results.summary['increments']} increments, distance {distances[0]:.2e} pressed, "
+              f"{distances[1]:.2e} shifted, the run says {said:.2e}")
+        bench.below(f"tolerance {tolerance}: distance from the fine path / tolerance", max(distances) / tolerance, 1.0)
+        bench.below(f"tolerance {tolerance}: distance from the fine path / what the run says", max(distances) / said, 1.0)
+        bench.below(f"tolerance {tolerance}: increments", results.summary["increments"], 150)
+
+
 CASES = {
     "cattaneo_mindlin_2d": {"reference": cattaneo_mindlin, "convergence": cattaneo_mindlin_convergence, "held": cattaneo_mindlin_held},
-    "mindlin_sphere_cycling": {
-        "reference": mindlin_cycling,
-        "fine": lambda bench: mindlin_cycling(bench, {"mesh.parameters.n": 8}, 0.03),
-    },
-    "cylinder_press_shear_path": {"reference": press_shear_path},
+    "mindlin_sphere_cycling": {"reference": mindlin_cycling},
+    "cylinder_press_shear_path": {"reference": press_shear_path, "path_control": press_shear_path_control},
     "stack_with_friction_3d": {"reference": stack, "ranks": stack_ranks},
 }

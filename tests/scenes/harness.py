@@ -23,8 +23,8 @@ def text_of(attribute):
     return attribute.decode() if isinstance(attribute, bytes) else str(attribute)
 
 
-def load_deck(scene):
-    text = (TOP / "inputs" / scene / f"{scene}.yaml").read_text(encoding="utf-8")
+def load_deck(scene, scenes=TOP / "inputs"):
+    text = (scenes / scene / f"{scene}.yaml").read_text(encoding="utf-8")
     return yaml.load(text, Loader=DeckLoader)
 
 

@@ -11,8 +11,8 @@ using Names = std::vector<std::string>;
 
 namespace {
 
-/// Of all displacement increments on the two surfaces of stretched_block: at the corners of the upper block.
-const double largest_increment = std::hypot(0.01, 0.01);
+/// Of all displacement increments of stretched_block: at the upper corners of the upper block.
+const double largest_increment = std::hypot(0.01, 0.02);
 
 void scale(std::vector<std::array<double, 3>>& vectors, double factor) {
   for (auto& vector : vectors)

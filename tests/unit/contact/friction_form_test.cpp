@@ -24,6 +24,7 @@ struct Scene {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Space space = Space::PlaneStrain;
   Integration integration = FacetIntegration{};
+  std::optional<Expression> factor = std::nullopt;
 };
 
 /// Two blocks with nothing but a frictional pair between them, and displacements by formula.
@@ -59,7 +60,7 @@ struct Fixture {
                      .stiffness = {100.0, 300.0}};
     pair.alpha = 3.0;
     pair.search_distance = 0.5;
-    pair.friction = Friction{.law = scene.law, .factor = std::nullopt, .field = unknown ? 1 : -1};
+    pair.friction = Friction{.law = scene.law, .factor = scene.factor, .field = unknown ? 1 : -1};
     auto contact = std::make_unique<ContactForm>(*layout, std::move(pair));
     form = contact.get();
     std::vector<std::unique_ptr<Form>> forms;
@@ -326,6 +327,83 @@ TEST_CASE("no coefficient, or no pressure: slip without traction, and a tangent 
       CHECK(std::abs(totals.tangential_force[0]) < 1e-11);
       CHECK(std::abs(totals.dissipation) < 1e-11);
     }
+}
+
+TEST_CASE("a snapshot brings back all that accepted increments have changed") {
+  for (const Enforcement& enforcement : {Enforcement(Penalty{}), Enforcement(Uzawa{}), Enforcement(Semismooth{0})}) {
+    Fixture fixture({.enforcement = enforcement, .law = SlipWeakening{.mu_s = 0.4, .mu_k = 0.2, .D_c = 0.05}});
+    fixture.prepare(Motion::Mixed);
+    const auto before = fixture.problem->snapshot();
+    const auto residual = fixture.layout->new_vector(), again = fixture.layout->new_vector();
+    fixture.problem->revisit(1.0, fixture.u);
+    VecCopy(fixture.problem->raw_residual(), residual);
+    const auto samples = fixture.form->samples(fixture.problem->state_at(fixture.u));
+    const auto there = fixture.layout->new_vector();
+    VecCopy(fixture.u, there);
+
+    fixture.problem->commit(fixture.u);
+    if (std::holds_alternative<Uzawa>(enforcement))
+      fixture.form->hold_multipliers(std::vector<double>(fixture.form->nodes().nodes.size(), -1.0));
+    fixture.set(fixture.u, -0.05, 0.02, 1.1, 0.0);
+    fixture.problem->begin_increment(2.0, fixture.u);
+    fixture.problem->commit(fixture.u);
+    fixture.problem->revisit(2.5, there);
+    VecAXPY(fixture.problem->raw_residual(), -1.0, residual);
+    CHECK(norm(fixture.problem->raw_residual()) > 1e-3 * norm(residual)); // the history matters
+
+    fixture.problem->restore(before);
+    CHECK(fixture.problem->time() == 0.5);
+    fixture.problem->revisit(1.0, there);
+    VecCopy(fixture.problem->raw_residual(), again);
+    VecAXPY(again, -1.0, residual);
+    CHECK(norm(again) == 0.0);
+    const auto restored = fixture.form->samples(fixture.problem->state_at(there));
+    CHECK(restored.accumulated_slip == samples.accumulated_slip);
+    REQUIRE(restored.states.size() == 1);
+    CHECK(restored.states == samples.states);
+  }
+}
+
+TEST_CASE("with multipliers, increments without motion leave tractions as they are") {
+  // Sticking points: nodal multipliers cannot take up all of their traction; what is left must not grow.
+  Fixture fixture({.enforcement = Uzawa{}});
+  fixture.set(fixture.u, 0.001, 0.002, 1.0, 1e-4);
+  fixture.problem->begin_increment(1.0, fixture.u);
+  const auto first = fixture.form->samples(fixture.problem->state_at(fixture.u));
+  fixture.problem->commit(fixture.u);
+  for (const double time : {1.1, 1.2, 1.3}) {
+    fixture.problem->begin_increment(time, fixture.u);
+    const auto later = fixture.form->samples(fixture.problem->state_at(fixture.u));
+    double largest = 0.0, change = 0.0;
+    for (std::size_t i = 0; i < later.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c) {
+        largest = std::max(largest, std::abs(first.shear[i][c]));
+        change = std::max(change, std::abs(later.shear[i][c] - first.shear[i][c]));
+      }
+    CHECK(change <= 1e-12 * largest);
+    fixture.problem->commit(fixture.u);
+  }
+}
+
+TEST_CASE("motion before friction begins leaves no shear behind") {
+  for (const Enforcement& enforcement : {Enforcement(Penalty{}), Enforcement(Uzawa{})}) {
+    const std::map<std::string, double> none;
+    Fixture fixture({.enforcement = enforcement, .factor = Expression("t > 1 ? 1 : 0", none)});
+    const std::size_t nodes = fixture.form->nodes().nodes.size();
+    fixture.form->tangential()->hold_multipliers({2, std::vector<double>(nodes, 0.0)});
+    fixture.set(fixture.u, 0.02, 0.01, 1.0, 0.0);
+    fixture.problem->begin_increment(0.5, fixture.u);
+    fixture.problem->commit(fixture.u);
+    fixture.set(fixture.u, 0.04, 0.01, 1.0, 0.0);
+    fixture.problem->begin_increment(1.0, fixture.u);
+    fixture.problem->commit(fixture.u);
+    fixture.problem->begin_increment(1.5, fixture.u);
+    const auto still = fixture.form->totals(fixture.problem->state_at(fixture.u));
+    CHECK(still.area > 0.1);
+    CHECK(std::abs(still.tangential_force[0]) < 1e-12 * still.force[1]);
+    fixture.set(fixture.u, 0.041, 0.01, 1.0, 0.0);
+    CHECK(fixture.form->totals(fixture.problem->state_at(fixture.u)).tangential_force[0] < -1e-3 * still.force[1]);
+  }
 }
 
 TEST_CASE("friction does not depend on the frame") {

@@ -74,7 +74,7 @@ struct Fixture {
             .master = master,
             .enforcement = BoundConstraint{},
             .projection = {},
-            .integration_degree = 7,
+            .integration = FacetIntegration{7},
             .search_distance = 0.2,
             .space = mesh.dim == 2 ? Space::PlaneStrain : Space::Solid,
             .stiffness = std::vector<double>(mesh.bodies.size(), 1.0)};

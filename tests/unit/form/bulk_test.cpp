@@ -233,6 +233,20 @@ TEST_CASE("rigid motions need no force, and nothing else is free of force") {
   }
 }
 
+TEST_CASE("far rigid motions need no force with a law that stiffens either") {
+  for (const auto& [type, space] : all_cases()) {
+    CAPTURE(int(type));
+    CAPTURE(int(space));
+    const Mesh mesh = small_mesh(type, PETSC_COMM_SELF, {1, 1, 1});
+    const DofLayout layout(mesh, {}, {});
+    BulkForm form(layout, space, {std::make_shared<StiffeningLaw>(space, 30.0)});
+    for (int k = 0; k < num_rigid(space); ++k) {
+      const Eigen::VectorXd u = 1e6 / 3 * nodal_values(mesh, [&](auto x) { return rigid_motion(space, k, x); });
+      CHECK(residual_of(layout, form, u).norm() < 1e-12 * u.norm() * soft.young);
+    }
+  }
+}
+
 TEST_CASE("axisymmetric: moving away from the axis costs hoop strain") {
   const Mesh mesh = small_mesh(ElementType::Quadrilateral4);
   const DofLayout layout(mesh, {}, {});

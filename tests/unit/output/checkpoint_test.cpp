@@ -27,6 +27,21 @@ NodalArray labelled(const Mesh& mesh, int components) {
   return array;
 }
 
+/// Rows that say to which facet they belong and which of its rows they are; every third facet has none.
+FacetArray labelled_rows(const Mesh& mesh) {
+  FacetArray array{.surface = "top", .components = 2, .rows = {}, .values = {}};
+  const auto& top = mesh.surfaces.at("top");
+  for (std::int32_t f = 0; f < top.size(); ++f) {
+    double far = 0.0;
+    for (const auto node : top.facet(f))
+      far = std::max(far, 5.0 * mesh.position(node)[0] + (mesh.dim == 3 ? mesh.position(node)[1] : 0.0));
+    array.rows.push_back(static_cast<int>(std::lround(10.0 * far)) % 3);
+    for (int row = 0; row < array.rows.back(); ++row)
+      array.values.insert(array.values.end(), {std::sin(far), double(row)});
+  }
+  return array;
+}
+
 Checkpoint sample(const Mesh& mesh) {
   Checkpoint checkpoint;
   checkpoint.time = 1.0 / 3.0;
@@ -35,6 +50,7 @@ Checkpoint sample(const Mesh& mesh) {
   checkpoint.next_increment = 0.01;
   checkpoint.global = {{"tied / forces", {1.0 / 7.0, -2.0, 1e300}}, {"none", {}}};
   checkpoint.nodal = {{"displacement", labelled(mesh, mesh.dim)}, {"multiplier: a/b", labelled(mesh, 1)}};
+  checkpoint.facets = {{"history: a/b", labelled_rows(mesh)}};
   return checkpoint;
 }
 
@@ -51,6 +67,12 @@ void check_equal(const Checkpoint& read, const Mesh& mesh) {
     CHECK(read.nodal.at(name).components == array.components);
     CHECK(read.nodal.at(name).values == array.values); // bit by bit
   }
+  REQUIRE(read.facets.contains("history: a/b"));
+  const auto &rows = read.facets.at("history: a/b"), &wanted = expected.facets.at("history: a/b");
+  CHECK(rows.surface == wanted.surface);
+  CHECK(rows.components == wanted.components);
+  CHECK(rows.rows == wanted.rows);
+  CHECK(rows.values == wanted.values);
 }
 
 TEST_CASE("a checkpoint comes back bit by bit under any partition") {

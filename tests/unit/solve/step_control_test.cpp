@@ -61,6 +61,18 @@ TEST_CASE("automatic increments grow when Newton is quick and shrink when it is 
   }
 }
 
+TEST_CASE("an increment that is wanted shorter ends at the smallest, and growth can be limited") {
+  StepControl control({.begin = 0.0, .end = 1.0, .equal_increments = 0, .first = 0.4, .smallest = 0.1}, 0.0);
+  CHECK(control.shortened(0.5));
+  CHECK(control.target() == doctest::Approx(0.2));
+  control.accepted(1, 0.75);
+  CHECK(control.increment() == doctest::Approx(0.15));
+  CHECK(control.shortened(0.25));
+  CHECK(control.target() - control.now() == doctest::Approx(0.1));
+  CHECK_FALSE(control.shortened(0.5));
+  CHECK(control.target() - control.now() == doctest::Approx(0.1));
+}
+
 TEST_CASE("a restart goes on inside a step with the increment it had") {
   StepControl control({.begin = 0.0, .end = 1.0, .equal_increments = 0, .first = 0.5}, 0.3, 0.1);
   CHECK(control.target() == doctest::Approx(0.4));

@@ -1,0 +1,61 @@
+// Solving increments of a scene from its last accepted state: whole, in halves for comparison, and coming back to one
+// that was solved before. Owns the solver and the unknowns.
+#pragma once
+
+#include "scene.hpp"
+#include "solve/bounded_newton.hpp"
+#include "solve/uzawa.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace amontons {
+
+/// A solved state put aside: what it takes to come back to it, and what is compared of it.
+struct SolvedState {
+  double time = 0.0;
+  SolveOutcome outcome;
+  VecHandle unknowns, multipliers;                   // multipliers: only of `uzawa` pairs
+  std::vector<std::vector<double>> forces_on_bounds; // multipliers of the pairs in a problem with bounds (`vi`)
+  std::vector<double> displacement;
+  std::vector<ContactSamples> samples;
+};
+
+class IncrementSolver {
+ public:
+  /// `interrupted`: see Newton. Collective.
+  IncrementSolver(Scene& scene, std::function<bool()> interrupted);
+
+  /// Which linear solver was chosen, in words.
+  const std::string& linear_solver() const { return linear_solver_; }
+  Vec unknowns() const { return unknowns_; }
+  Vec accepted() const { return accepted_; }
+
+  /// From the last accepted state to equilibrium at `target`. Collective.
+  SolveOutcome solve(double target);
+  /// Accepts the unknowns, or goes back to the last accepted ones. Collective.
+  void commit();
+  void roll_back();
+  /// Takes what a restart has put into the unknowns for the last accepted state.
+  void resume();
+
+  /// A copy of what solve() has found. Collective.
+  SolvedState put_aside(const SolveOutcome& outcome);
+  /// Solves the increment to `target` in two halves and comes back to the last accepted state. Two states, or those
+  /// that converged before one did not; `outcome`: sums over both, with the reason of a failure. Collective.
+  std::vector<SolvedState> solve_halves(double target, SolveOutcome& outcome);
+  /// Puts a state in place that was solved from the last accepted one, ready to be accepted. Collective.
+  void revisit(const SolvedState& state);
+
+ private:
+  Scene& scene_;
+  std::string linear_solver_;
+  std::unique_ptr<BoundedNewton> bounded_; // with bounds, else newton_
+  std::unique_ptr<Newton> newton_;
+  std::unique_ptr<UzawaLoop> uzawa_;
+  VecHandle unknowns_, accepted_;
+};
+
+} // namespace amontons

@@ -1,0 +1,41 @@
+// What a contact pair remembers of the last accepted state, as plain data: what a snapshot keeps and a checkpoint
+// stores.
+#pragma once
+
+#include "friction/return_mapping.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace amontons {
+
+/// Friction at a point of the slave surface. All vectors are Cartesian, so nothing depends on how facets are numbered.
+struct PointHistory {
+  TangentVector traction{};     // what the slave exerts, stress
+  std::array<double, 3> jump{}; // u_slave − u_master − rigid shift, length
+  FrictionState state{};        // of the law
+  double slip = 0.0;            // accumulated over all contacts of the point, length
+  bool open = true;
+
+  /// As a row of numbers, and back.
+  static constexpr int row_size = 10;
+  void append_to(std::vector<double>& row) const;
+  static PointHistory from_row(std::span<const double> row);
+};
+
+/// The normal part at a point over a curved rigid master, whose normal turns as it moves.
+struct NormalHistory {
+  double sigma = 0.0, gap = 0.0;
+  std::array<double, 3> normal{}, jump{}; // jump: u_slave − rigid shift
+};
+
+struct ContactHistory {
+  double time = 0.0;
+  std::vector<double> multipliers;                         // at ContactForm::nodes(), stress
+  std::vector<std::vector<double>> tangential_multipliers; // [component][node], stress; empty without friction
+  std::vector<PointHistory> points;                        // of this rank; empty without friction
+  std::vector<NormalHistory> normals;                      // of this rank; empty without a curved rigid master
+};
+
+} // namespace amontons
