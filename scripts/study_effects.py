@@ -75,8 +75,9 @@ def effects_words(study, names, outcomes):
         if not outcome.solved:
             lines.append(f"| {name[8:]} | {outcome.word} |" + " |" * (2 + len(quantities)))
             continue
+        doubt = "" if outcome.word == "certified" else f" ({outcome.word})"
         lines.append(
-            f"| {name[8:]} | {median(outcome.cpu):.3g} s ({change(median(outcome.cpu), median(base.cpu))}) | "
+            f"| {name[8:]}{doubt} | {median(outcome.cpu):.3g} s ({change(median(outcome.cpu), median(base.cpu))}) | "
             f"{median(outcome.memory) / 1e6:.0f} MB ({change(median(outcome.memory), median(base.memory))}) | "
             f"{outcome.unknowns} | " + " | ".join(change(outcome.values.get(q.name), base.values.get(q.name))
                                                   for q in quantities) + " |")

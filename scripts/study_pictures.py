@@ -13,7 +13,8 @@ from study_words import comparable, front_of, groups, is_absolute, main_knob
 COLOURS = [BLUE, ORANGE, "#3a8f6b", "#8a4fa3", "#b03a48", "#6b7480", "#a0792c", "#2c8fa0"]
 MARKERS = "osD^v<>P"
 LINES = ["-", "--", ":", "-."]
-MAX_PANELS = 6
+MAX_PANELS, MAX_SWEEPS = 6, 8
+DECADES = 6  # shown of an error; what lies farther below is round-off and would press the rest together
 
 
 def points(panel, outcomes, quantity, colour, marker, label):
@@ -36,6 +37,11 @@ def plain_seconds(axis):
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
     axis.set_minor_formatter(NullFormatter())
+
+
+def cut_round_off(panel):
+    low, high = panel.get_ylim()
+    panel.set_ylim(max(low, high / 10.0**DECADES), high)
 
 
 def draw_front(panel, front, quantity):
@@ -77,6 +83,7 @@ def error_time_figure(study, outcomes):
         low, high = panel.get_xlim()
         panel.set_xlim(low * (low / high)**0.35, high)
         plain_seconds(panel.xaxis)
+        cut_round_off(panel)
         panel.set_xlabel("CPU time in s, all ranks (median and range)")
         panel.set_ylabel("absolute error" if is_absolute(outcomes, quantity) else "relative error")
         panel.set_title(quantity.label)
@@ -135,7 +142,7 @@ def key(panel, entries, **where):
 
 def knobs_figure(study, outcomes):
     """A column a sweep: errors, CPU time and iterations over its main knob."""
-    names = [name for name in study.sweeps if groups(study, outcomes, name)][:MAX_PANELS]
+    names = [name for name in study.sweeps if groups(study, outcomes, name)][:MAX_SWEEPS]
     if not names:
         return None
     figure = plt.figure(figsize=(max(3.0 * len(names), 5.0), 8.4), layout="constrained")
@@ -162,6 +169,7 @@ def knobs_figure(study, outcomes):
                                                        "marker": MARKERS[g % len(MARKERS)], "ms": 3.5})
                                for g, (others, _) in enumerate(found)], loc="best")
     plain_seconds(panels[1, 0].yaxis)
+    cut_round_off(panels[0, 0])
     key(panels[2, 0], [("Newton", {"color": newton[0]}), ("linear", {"color": ORANGE})], loc="upper left")
     key(below, [(f"error of {quantity.label}", {"color": curve[0]}) for quantity, curve in zip(with_error, errors)]
         + [("failed", {"color": "#b03a48", "marker": "x", "ls": ""})], loc="center", ncols=5)
