@@ -194,6 +194,10 @@ def accuracy(case):
                 found[0]["errors"]["path"]["relative"] == found[0]["path"]["estimated_error"])
     case.expect("and null where not", found[1]["errors"]["path"]["relative"] is None)
     coarse, fine = (found[refine]["errors"]["discretization"]["relative"] for refine in (0, 1))
+    for load, warned in (("-450*t", False), ("-60000*t", True)):  # N/mm: mild, and as if the bodies did not yield
+        _, text = case.run(2, case.deck({"boundary.3.resultant.y": load}), "--out", case.folder / "load")
+        case.expect(f"load {load}: warned of small kinematics: {warned}",
+                    ("finite_kinematics is off, but" in text) == warned, text)
     case.expect("half the cell size, half the error", 0.4 < fine / coarse < 0.6 and coarse < 0.5, (coarse, fine))
 
 
