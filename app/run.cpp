@@ -5,6 +5,7 @@
 #include "base/log.hpp"
 #include "base/timer.hpp"
 #include "certify.hpp"
+#include "error_budget.hpp"
 #include "increment_solver.hpp"
 #include "ledger.hpp"
 #include "output/history.hpp"
@@ -61,6 +62,7 @@ class Run {
   void accept(const Stretch& stretch, const SolveOutcome& outcome, double path_error);
   void write_checkpoint_file(const Stretch& stretch);
   void progress(const std::string& step, const IncrementReport& report, const std::vector<ContactTotals>& totals);
+  void judge_accuracy(nlohmann::ordered_json& summary);
   int finish(int status, const std::string& reason);
   std::string file(const char* name) const { return directory_ + "/" + name; }
 
@@ -84,7 +86,9 @@ class Run {
   int increments_ = 0, cutbacks_ = 0, newton_iterations_ = 0, linear_iterations_ = 0, outer_iterations_ = 0,
       factorizations_ = 0;
   CertificateRecord certificate_;
+  double largest_residual_ = 0.0; // of the accepted increments
   std::vector<ContactTotals> last_totals_;
+  std::optional<std::vector<ContactSamples>> last_samples_; // absent until an increment is accepted
 };
 
 Run::Run(MPI_Comm comm, const RunArguments& arguments) : comm_(comm), arguments_(arguments), log_(comm) {
@@ -322,6 +326,8 @@ void Run::accept(const Stretch& stretch, const SolveOutcome& outcome, double pat
   const bool ends_step = report.time >= scene_->deck.steps[stretch.step].to;
   if (ends_step || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns, samples);
   write_checkpoint_file(stretch);
+  largest_residual_ = std::max(largest_residual_, outcome.residual);
+  last_samples_ = std::move(samples);
 }
 
 void Run::write_checkpoint_file(const Stretch& stretch) {
@@ -366,6 +372,22 @@ int Run::march() {
                                : finish(status_not_certified, "converged, but the certificate failed");
 }
 
+/// Adds errors and effects to the summary, and what they amount to to the log.
+void Run::judge_accuracy(nlohmann::ordered_json& summary) {
+  if (!last_samples_) return;
+  summary["errors"] = error_budget({.scene = *scene_,
+                                    .unknowns = solver_->accepted(),
+                                    .samples = *last_samples_,
+                                    .certificate = certificate_,
+                                    .path = path_ ? &*path_ : nullptr,
+                                    .largest_residual = largest_residual_,
+                                    .wall_seconds = now() - started_});
+  summary["effects"] = audit_effects(*scene_, solver_->accepted());
+  log_.line("  " + budget_sentence(summary["errors"]));
+  for (const auto& line : audit_warnings(summary["effects"]))
+    log_.line("  warning: " + line);
+}
+
 int Run::finish(int status, const std::string& reason) {
   int ranks = 1;
   MPI_Comm_size(comm_, &ranks);
@@ -393,6 +415,7 @@ int Run::finish(int status, const std::string& reason) {
                        {"external_work_uncertainty", ledger_->work_uncertainty()}};
   if (path_) summary["path"] = path_->to_json();
   summary["certificate"] = certificate_.to_json();
+  judge_accuracy(summary);
   summary["resources"] = resources(comm_, now() - started_);
   write_summary(comm_, file("summary.json"), summary);
   for (const auto& line : certificate_.failures())

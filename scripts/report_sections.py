@@ -178,7 +178,7 @@ def time_budget(run):
 
 
 def audit(run):
-    found = (run.summary or {}).get("audit")
+    found = (run.summary or {}).get("effects")
     return table((), nested_rows(found)) if isinstance(found, dict) else ""
 
 

@@ -170,6 +170,37 @@ def cutback(case):
         case.expect("or the program gives up with 3", status == 3, text)
 
 
+def accuracy(case):
+    """The summary says how large each error is, and that of the mesh is of first order."""
+    found = {}
+    for refine in (0, 1):
+        out = case.folder / f"refine_{refine}"
+        deck = case.deck({"mesh.refine": refine, "steps.0.increments": 2, "estimate_path_error": refine == 0})
+        status, text = case.run(2, deck, "--out", out)
+        case.expect(f"refine {refine}: the run ends with 0", status == 0, text)
+        case.expect(f"refine {refine}: the log has the errors in a line", text.count("errors: mesh about") == 1, text)
+        summary = found[refine] = json.loads((out / "summary.json").read_text())
+        errors = summary["errors"]
+        case.expect(f"refine {refine}: all kinds of errors", list(errors) == ["discretization", "path", "constraint", "algebra"])
+        mesh = errors["discretization"]
+        case.expect(f"refine {refine}: a part of the mesh's error", 0 < mesh["share_near_contact_edge"] < 1, mesh)
+        case.expect(f"refine {refine}: its cost is timed", 0 < mesh["cost"]["seconds"] < summary["resources"]["wall_seconds"])
+        items = summary["certificate"]["items"]
+        case.expect(f"refine {refine}: the certificate's penetration",
+                    errors["constraint"]["penetration"] == items["penetration"]["worst"], errors)
+        case.expect(f"refine {refine}: small residuals", 0 < errors["algebra"]["relative"] < 1e-6, errors["algebra"])
+        case.expect(f"refine {refine}: the effects off", not summary["effects"]["finite_kinematics"]["on"])
+    case.expect("path error where asked for",
+                found[0]["errors"]["path"]["relative"] == found[0]["path"]["estimated_error"])
+    case.expect("and null where not", found[1]["errors"]["path"]["relative"] is None)
+    coarse, fine = (found[refine]["errors"]["discretization"]["relative"] for refine in (0, 1))
+    for load, warned in (("-450*t", False), ("-60000*t", True)):  # N/mm: mild, and as if the bodies did not yield
+        _, text = case.run(2, case.deck({"boundary.3.resultant.y": load}), "--out", case.folder / "load")
+        case.expect(f"load {load}: warned of small kinematics: {warned}",
+                    ("finite_kinematics is off, but" in text) == warned, text)
+    case.expect("half the cell size, half the error", 0.4 < fine / coarse < 0.6 and coarse < 0.5, (coarse, fine))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     cases = {
@@ -179,6 +210,7 @@ def main():
         "interrupt": interrupt,
         "statuses": statuses,
         "cutback": cutback,
+        "accuracy": accuracy,
     }
     parser.add_argument("case", choices=cases)
     parser.add_argument("--program", required=True)

@@ -1,0 +1,124 @@
+#include "error_budget.hpp"
+
+#include "accuracy/discretization_error.hpp"
+#include "accuracy/kinematics_audit.hpp"
+#include "base/log.hpp"
+#include "base/timer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+namespace amontons {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+/// Where the terms that small kinematics leave out are more than this part of the largest strain, strains are off by as
+/// much. A choice: what is usual as accuracy of a stress analysis.
+constexpr double most_neglected = 0.05;
+
+Json cost(double seconds, const BudgetInput& input) {
+  return {{"seconds", seconds}, {"share_of_time", seconds / std::max(input.wall_seconds, 1e-12)}};
+}
+
+double seconds_of_phase(const char* phase) {
+  const auto& seconds = PhaseTimer::of_run().seconds();
+  const auto found = seconds.find(phase);
+  return found == seconds.end() ? 0.0 : found->second;
+}
+
+Json discretization(const BudgetInput& input) {
+  const Phase phase("error estimate");
+  const auto begun = Clock::now();
+  Scene& scene = input.scene;
+  const auto state = scene.problem->state_at(input.unknowns);
+  std::vector<std::string> slaves;
+  for (const auto* contact : scene.contacts)
+    slaves.push_back(contact->pair().slave);
+  const auto edge = contact_edge(scene.mesh, state.displacement, slaves, input.samples);
+  const auto error = estimate_discretization_error(*scene.bulk, scene.mesh, state, edge);
+  const std::chrono::duration<double> taken = Clock::now() - begun;
+  Json json = {{"relative", error.relative()}, {"energy_norm", error.error}};
+  if (!edge.empty()) json["share_near_contact_edge"] = error.edge_share();
+  json["meaning"] =
+      "error of the stress at the end, by patch recovery (Zienkiewicz and Zhu, 1992), in the energy norm, "
+      "relative to that of the solution; the share is that of its square in cells within a facet of a "
+      "change of status";
+  json["cost"] = cost(taken.count(), input);
+  return json;
+}
+
+Json path(const BudgetInput& input) {
+  if (!input.path) return {{"relative", nullptr}, {"meaning", "not measured: the deck does not ask for it"}};
+  const Json record = input.path->to_json();
+  return {{"relative", record.at("estimated_error")},
+          {"meaning", "see `path`"},
+          {"cost", cost(record.at("extra_seconds").get<double>(), input)}};
+}
+
+Json constraint(const BudgetInput& input) {
+  if (input.scene.contacts.empty()) return {{"meaning", "no contact"}};
+  const Json items = input.certificate.to_json().at("items");
+  return {{"penetration", items.at("penetration").at("worst")},
+          {"complementarity", items.at("complementarity").at("worst")},
+          {"meaning", "largest of all increments, found by the certificate: penetration relative to the facet, "
+                      "pressure across open gaps relative to force times facet"},
+          {"cost", cost(seconds_of_phase("certificate"), input)}};
+}
+
+} // namespace
+
+Json error_budget(const BudgetInput& input) {
+  return {{"discretization", discretization(input)},
+          {"path", path(input)},
+          {"constraint", constraint(input)},
+          {"algebra",
+           {{"relative", input.largest_residual},
+            {"meaning", "largest out-of-balance force that the solver has left in an increment, relative to the forces "
+                        "that are balanced"}}}};
+}
+
+std::string budget_sentence(const Json& budget) {
+  const auto& mesh = budget.at("discretization");
+  std::string line =
+      formatted("errors: mesh about %.2g %% in the energy norm", 100 * mesh.at("relative").get<double>());
+  if (mesh.contains("share_near_contact_edge"))
+    line += formatted(" (%.0f %% of its square at the edge of contact)",
+                      100 * mesh.at("share_near_contact_edge").get<double>());
+  const auto& steps = budget.at("path").at("relative");
+  line += steps.is_null() ? ", increments not measured" : formatted(", increments %.2g %%", 100 * steps.get<double>());
+  if (budget.at("constraint").contains("penetration"))
+    line += formatted(", penetration %.1e of a facet", budget.at("constraint").at("penetration").get<double>());
+  return line + formatted(", residual force %.1e", budget.at("algebra").at("relative").get<double>());
+}
+
+Json audit_effects(const Scene& scene, Vec unknowns) {
+  const Phase phase("error estimate");
+  const auto state = scene.problem->state_at(unknowns);
+  const auto audit = audit_kinematics(scene.mesh, scene.deck.space, state.displacement);
+  return {{"finite_kinematics",
+           {{"on", false},
+            {"indicator", audit.ratio()},
+            {"threshold", most_neglected},
+            {"above_threshold", audit.ratio() > most_neglected},
+            {"largest_rotation", audit.rotation},
+            {"largest_strain", audit.strain},
+            {"meaning", "largest term of the Green-Lagrange strain that small kinematics leave out, over the largest "
+                        "strain (Bathe, Finite Element Procedures, section 6.2.2); where rotations are larger than "
+                        "strains it grows with their square"}}}};
+}
+
+std::vector<std::string> audit_warnings(const Json& effects) {
+  std::vector<std::string> lines;
+  for (const auto& [name, effect] : effects.items())
+    if (effect.at("above_threshold").get<bool>())
+      lines.push_back(formatted("%s is off, but its indicator is %.2g, above %.2g: see `effects` in the summary",
+                                name.c_str(), effect.at("indicator").get<double>(),
+                                effect.at("threshold").get<double>()));
+  return lines;
+}
+
+} // namespace amontons

@@ -1,0 +1,37 @@
+// What a run says at its end about its own accuracy: the size of each kind of error with what it cost to know it, and
+// whether effects that are off should have been on.
+#pragma once
+
+#include "certify.hpp"
+#include "path_record.hpp"
+#include "scene.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace amontons {
+
+/// The last accepted state, and what the run has gathered on its way there.
+struct BudgetInput {
+  Scene& scene;
+  Vec unknowns;
+  std::span<const ContactSamples> samples;
+  const CertificateRecord& certificate;
+  const PathRecord* path;  // null: not measured
+  double largest_residual; // of all accepted increments, relative to the force scale
+  double wall_seconds;
+};
+
+/// `errors` of the summary: discretization, path, constraint and algebra. Collective.
+nlohmann::ordered_json error_budget(const BudgetInput& input);
+/// The budget in a sentence.
+std::string budget_sentence(const nlohmann::ordered_json& budget);
+
+/// `effects` of the summary: of what is off, an indicator with its threshold. Collective.
+nlohmann::ordered_json audit_effects(const Scene& scene, Vec unknowns);
+/// A sentence for each indicator above its threshold.
+std::vector<std::string> audit_warnings(const nlohmann::ordered_json& effects);
+
+} // namespace amontons

@@ -1,0 +1,189 @@
+#include "accuracy/discretization_error.hpp"
+
+#include "accuracy/facet_cloud.hpp"
+#include "accuracy/patch_recovery.hpp"
+#include "fe/node_numbering.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace amontons {
+
+namespace {
+
+using accuracy::PatchRecovery;
+
+constexpr std::size_t statuses = 3; // of ContactStatus
+
+/// Where the error of a cell is integrated: a rule that sees polynomials of twice the element's order. That of the
+/// stiffness does, except in simplices, whose points are just those where the stress is best.
+struct ErrorRule {
+  const Tabulation* table;      // the element's functions, for places
+  Eigen::MatrixXd corners;      // functions of order 1 at the points
+  Eigen::MatrixXd continuation; // from values at the points of the stiffness to values here; empty: the same points
+};
+
+/// Continues a field of order p - 1 by least squares: a row for each new point, a column for each old one.
+Eigen::MatrixXd continuation(const Quadrature& from, const Quadrature& to, int order) {
+  const auto polynomial = [order](const Quadrature& rule) {
+    Eigen::MatrixXd terms = Eigen::MatrixXd::Ones(rule.size(), order == 1 ? 1 : 1 + rule.dim);
+    for (int q = 0; q < rule.size(); ++q)
+      for (Eigen::Index i = 1; i < terms.cols(); ++i)
+        terms(q, i) = rule.point(q)[i - 1];
+    return terms;
+  };
+  return polynomial(to) * polynomial(from).completeOrthogonalDecomposition().pseudoInverse();
+}
+
+ErrorRule error_rule(const Tabulation& own) {
+  const int order = element_order(own.type), dim = element_dim(own.type);
+  ErrorRule rule{&own, {}, {}};
+  if (own.rule->size() < accuracy::num_terms(dim, order)) {
+    rule.table = &tabulation(own.type, 2 * order);
+    rule.continuation = continuation(*own.rule, *rule.table->rule, order);
+  }
+  const ElementType corner_type = linear_element(own.type);
+  const Quadrature& points = *rule.table->rule;
+  rule.corners.resize(points.size(), num_nodes(corner_type));
+  std::vector<double> values(num_nodes(corner_type));
+  for (int q = 0; q < points.size(); ++q) {
+    shape_values(corner_type, points.point(q), values);
+    for (std::size_t a = 0; a < values.size(); ++a)
+      rule.corners(q, a) = values[a];
+  }
+  return rule;
+}
+
+/// Volumes that the points of the rule stand for in a cell of volume Σ `own`; on curved sides to first order.
+Eigen::VectorXd volumes(const ErrorRule& rule, std::span<const double> own) {
+  const Eigen::Map<const Eigen::VectorXd> given(own.data(), own.size());
+  if (rule.continuation.size() == 0) return given;
+  const auto& weights = rule.table->rule->weights;
+  const Eigen::Map<const Eigen::VectorXd> parts(weights.data(), weights.size());
+  return parts * (given.sum() / parts.sum());
+}
+
+/// Which cells lie near the edge of contact.
+class EdgeRegion {
+ public:
+  explicit EdgeRegion(std::span<const ContactEdgePoint> edge) : tree_(boxes(edge)) {}
+
+  bool meets(const Mesh& mesh, std::span<const double> displacement, std::span<const std::int32_t> nodes) {
+    Box box;
+    for (const auto node : nodes) {
+      std::array<double, 3> place{};
+      for (int i = 0; i < mesh.dim; ++i)
+        place[i] = mesh.position(node)[i] + displacement[std::size_t(node) * mesh.dim + i];
+      box.include(place);
+    }
+    tree_.query(box, found_);
+    return !found_.empty();
+  }
+
+ private:
+  static std::vector<Box> boxes(std::span<const ContactEdgePoint> edge) {
+    std::vector<Box> result(edge.size());
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+      result[i].include(edge[i].place);
+      result[i].inflate(edge[i].size);
+    }
+    return result;
+  }
+
+  BoxTree tree_;
+  std::vector<std::int32_t> found_;
+};
+
+/// Squares of the error and of the solution in cell `c` of a batch.
+std::array<double, 2> squares(const PatchRecovery& recovery, const ErrorRule& rule, const Mesh& mesh,
+                              const PointBatch& batch, std::int32_t c) {
+  const auto points = static_cast<std::size_t>(batch.table->rule->size());
+  const auto own = batch.weights.subspan(c * points, points);
+  PointBatch fine = batch;
+  fine.table = rule.table;
+  Eigen::MatrixXd fields = accuracy::point_fields(batch, c);
+  if (rule.continuation.size() > 0) fields = rule.continuation * fields;
+  const Eigen::MatrixXd error =
+      recovery.at(*batch.block, batch.first_cell + c, accuracy::point_places(mesh, fine, c), rule.corners) - fields;
+  const Eigen::VectorXd volume = volumes(rule, own);
+  const auto work = [&](const Eigen::MatrixXd& f) {
+    const auto half = f.cols() / 2;
+    return f.leftCols(half).cwiseProduct(f.rightCols(half)).rowwise().sum().dot(volume);
+  };
+  return {work(error), work(fields)};
+}
+
+} // namespace
+
+std::vector<ContactEdgePoint> contact_edge(const Mesh& mesh, std::span<const double> displacement,
+                                           std::span<const std::string> slaves,
+                                           std::span<const ContactSamples> samples) {
+  std::vector<double> mine; // place and size, four numbers a point
+  for (std::size_t pair = 0; pair < slaves.size(); ++pair) {
+    const auto& nodes = mesh.node_groups.at(slaves[pair]);
+    std::vector<std::int32_t> index(mesh.num_local(), -1);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      index[nodes[i]] = static_cast<std::int32_t>(i);
+    // Around each node: points of every status, all points, sum of their facets' sizes.
+    std::vector<std::vector<double>> counts(statuses + 1, std::vector<double>(nodes.size(), 0.0));
+    const FacetSet& facets = mesh.surfaces.at(slaves[pair]);
+    const ContactSamples& points = samples[pair];
+    for (std::size_t q = 0; q < points.size(); ++q)
+      for (int a = 0; a < num_vertices(facets.types[points.facet[q]]); ++a) {
+        const auto node = index[facets.facet(points.facet[q])[a]];
+        counts[static_cast<std::size_t>(points.status[q])][node] += 1.0;
+        counts[statuses][node] += points.facet_size[q];
+      }
+    const NodeSpace space(mesh, {{slaves[pair], nodes}});
+    for (auto& count : counts) {
+      std::vector<std::vector<double>> local = {count};
+      const VecHandle sum = space.new_vector();
+      space.add(local, sum);
+      space.gather(sum, local);
+      count = local[0];
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const double all = counts[0][i] + counts[1][i] + counts[2][i];
+      const bool mixed = std::max({counts[0][i], counts[1][i], counts[2][i]}) < all;
+      if (!mixed || nodes[i] >= mesh.num_owned) continue;
+      for (int c = 0; c < 3; ++c)
+        mine.push_back(c < mesh.dim ? mesh.position(nodes[i])[c] + displacement[std::size_t(nodes[i]) * mesh.dim + c]
+                                    : 0.0);
+      mine.push_back(counts[statuses][i] / all);
+    }
+  }
+  int ranks = 1;
+  MPI_Comm_size(mesh.comm, &ranks);
+  const auto all = accuracy::exchanged(mesh.comm, std::vector<std::vector<double>>(ranks, mine));
+  std::vector<ContactEdgePoint> edge;
+  for (std::size_t i = 0; i + 3 < all.size(); i += 4)
+    edge.push_back({{all[i], all[i + 1], all[i + 2]}, all[i + 3]});
+  return edge;
+}
+
+double DiscretizationError::relative() const { return error > 0.0 ? error / std::hypot(error, solution) : 0.0; }
+
+double DiscretizationError::edge_share() const { return error > 0.0 ? std::pow(near_edge / error, 2) : 0.0; }
+
+DiscretizationError estimate_discretization_error(BulkForm& solid, const Mesh& mesh, const State& state,
+                                                  std::span<const ContactEdgePoint> edge) {
+  const PatchRecovery recovery(solid, mesh, state);
+  EdgeRegion region(edge);
+  std::array<double, 3> sums{}; // squares of error, near_edge, solution
+  solid.for_each_batch(state, [&](const PointBatch& batch) {
+    const ErrorRule rule = error_rule(*batch.table);
+    for (std::int32_t c = 0; c < batch.num_cells; ++c) {
+      const auto [error, solution] = squares(recovery, rule, mesh, batch, c);
+      sums[0] += error;
+      if (region.meets(mesh, state.displacement, batch.block->cell(batch.first_cell + c))) sums[1] += error;
+      sums[2] += solution;
+    }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  for (double& sum : sums)
+    sum = std::sqrt(std::max(0.0, sum));
+  return {.error = sums[0], .near_edge = sums[1], .solution = sums[2]};
+}
+
+} // namespace amontons

@@ -1,0 +1,53 @@
+// Polynomials fitted to fields around the corner nodes of a mesh, and their blend inside cells. For lib/accuracy only.
+#pragma once
+
+#include "form/bulk.hpp"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace amontons::accuracy {
+
+/// 1, x_i, and with order 2 x_i x_j: as many as there are coefficients in a polynomial.
+int num_terms(int dim, int order);
+
+/// Coordinates of the batch's points in cell `c`, one a row.
+Eigen::MatrixXd point_places(const Mesh& mesh, const PointBatch& batch, std::int32_t c);
+/// Strain and stress at the points of cell `c`, side by side, one point a row.
+Eigen::MatrixXd point_fields(const PointBatch& batch, std::int32_t c);
+
+/// Strain and stress of all cells, recovered. A node has one polynomial for each body that it belongs to.
+class PatchRecovery {
+ public:
+  /// Collective.
+  PatchRecovery(BulkForm& solid, const Mesh& mesh, const State& state);
+
+  /// Recovered strain and stress, one place a row as in point_fields, at `places` of cell `c`, where `corners` are the
+  /// values of the cell's functions of order 1 (places x corners).
+  Eigen::MatrixXd at(const CellBlock& block, std::int32_t c, const Eigen::MatrixXd& places,
+                     const Eigen::MatrixXd& corners) const;
+
+ private:
+  /// How far the polynomial of a patch can be trusted: a mean value only, fitted from one side, fitted all around.
+  enum class Standing : std::uint8_t { Mean, OneSided, Surrounded };
+
+  void number_patches();
+  void add_cells(const PointBatch& batch);
+  void add_boundary();
+  void sum_over_ranks();
+  void fit();
+  Standing fit_patch(std::span<const double> sums, bool on_boundary, std::span<double> coefficients) const;
+  Eigen::VectorXd terms(Eigen::VectorXd distance) const;
+  std::int32_t patch(std::int32_t body, std::int32_t node) const { return patches_[body][node]; }
+
+  const Mesh& mesh_;
+  int terms_, fields_;
+  std::size_t stride_;                             // numbers of a patch in sums_
+  std::vector<NodeField> nodes_;                   // of the patches, body by body
+  std::vector<std::vector<std::int32_t>> patches_; // per body and local node; -1: none
+  std::vector<double> sums_; // per patch: Σ t tᵀ (upper part by rows), Σ t f (term by term), facets of the boundary
+  std::vector<double> coefficients_; // per patch, term by term
+  std::vector<Standing> standing_;
+};
+
+} // namespace amontons::accuracy
