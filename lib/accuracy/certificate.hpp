@@ -22,7 +22,7 @@ struct CertificateTolerances {
   double energy = 1e-6;          // violation of the energy bounds / energy scale
   double volume_ratio = 0.0;     // smallest det(I + ∇u) / reference volume
   double friction = 1e-6;        // shear off the law's limit, and negative frictional work, relative (see certify)
-  double slip = 0.1;            // tangential motion that is not the slip claimed / largest motion (see certify)
+  double slip = 0.1;             // tangential motion that is not the slip claimed / largest motion (see certify)
 };
 
 /// Energies over all ranks, the same on every rank. All cumulative since the start of the run.
