@@ -240,9 +240,9 @@ TEST_CASE("no locking at nu = 0.4999: the errors of an isochoric solution are th
 }
 
 TEST_CASE("no locking of tetrahedra of order 2 on an unstructured mesh") {
-  const MeshSource source{AMONTONS_SOURCE_DIR "/tests/unit/form/cube.geo", {{"h", 0.12}}, 2};
+  const MeshSource source{AMONTONS_SOURCE_DIR "/tests/unit/form/cube.geo", {{"h", 0.16}}, 2};
   const Mesh mesh = distribute_mesh(PETSC_COMM_SELF, read_mesh(source), {}, 0);
-  REQUIRE(mesh.blocks[0].size() > 500);
+  REQUIRE(mesh.blocks[0].size() > 250);
   const Errors compressible = isochoric_errors(mesh, Space::Solid, 0.3);
   const Errors nearly = isochoric_errors(mesh, Space::Solid, 0.4999);
   CHECK(nearly.displacement < 2 * compressible.displacement);
@@ -279,10 +279,10 @@ double cook_rise(ElementType type, int n) {
 }
 
 TEST_CASE("Cook's membrane at nu = 0.4999: triangles and quadrilaterals agree, but for triangles of order 1") {
-  const double rise = cook_rise(ElementType::Quadrilateral9, 16);
+  const double rise = cook_rise(ElementType::Quadrilateral9, 8);
   CHECK(rise > 1);
-  CHECK(cook_rise(ElementType::Triangle6, 16) == doctest::Approx(rise).epsilon(0.01));
-  CHECK(cook_rise(ElementType::Quadrilateral4, 32) == doctest::Approx(rise).epsilon(0.01));
+  CHECK(cook_rise(ElementType::Triangle6, 8) == doctest::Approx(rise).epsilon(0.02));
+  CHECK(cook_rise(ElementType::Quadrilateral4, 16) == doctest::Approx(rise).epsilon(0.02));
   CHECK(cook_rise(ElementType::Triangle3, 16) < 0.5 * rise);
 }
 
