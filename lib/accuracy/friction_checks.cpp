@@ -104,6 +104,10 @@ void check_slip(const CertificateInput& input, std::size_t pair, Worst& worst) {
   const ContactSamples& samples = input.samples[pair];
   double largest = 0.0;
   const std::vector<Vector> moved = moved_over_master(input, pair, largest);
+  // Surfaces that rest while the bodies deform move by rounding only, which is not to be taken for their scale.
+  constexpr double resting = 1e-8; // of the largest displacement increment anywhere
+  for (const double moved_by : input.increment)
+    largest = std::max(largest, resting * std::abs(moved_by));
   std::array<double, 2> sums{}; // Σ |shear| |Δg_t − slip| w, Σ |shear| w
   for (std::size_t i = 0; i < samples.shear.size(); ++i) {
     const double along = dot(moved[i], samples.normal[i]);

@@ -56,7 +56,7 @@ def start(options, ranks, words):
     """Finished process of the program, one rank without mpirun."""
     mpirun = [*options.mpirun.split(), "-n", str(ranks)] if ranks > 1 else []
     command = [*mpirun, options.program, *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, env=environment(), timeout=SECONDS_HANGING, check=False)
+    return subprocess.run(command, capture_output=True, text=True, errors="replace", env=environment(), timeout=SECONDS_HANGING, check=False)
 
 
 def judge(scene, check, formulation, done, results):
