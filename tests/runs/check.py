@@ -14,23 +14,25 @@ from pathlib import Path
 
 import yaml
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scenes"))
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS / "scenes"), str(TESTS / "support")]
 from friction_runs import path_control, restart_of_friction  # noqa: E402
 from harness import TOP, load_deck, set_key  # noqa: E402
+from score import Score  # noqa: E402
 
 HERTZ = "hertz_2d"
 CHEAP = {"mesh.parameters.h": 0.1, "steps.0.increments": 4}
 
 
-class Case:
+class Case(Score):
     """Decks and results of one case in a folder of its own."""
 
     def __init__(self, program, mpirun, folder):
+        super().__init__()
         self.program, self.mpirun, self.folder = program, mpirun, Path(folder)
         self.environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
         if os.geteuid() == 0:
             self.environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        self.failed = self.checks = 0
 
     def deck(self, changes=None, name="deck"):
         deck = load_deck(HERTZ)
@@ -54,11 +56,6 @@ class Case:
         process = self.start(ranks, *words)
         text, _ = process.communicate(timeout=300)
         return process.returncode, text
-
-    def expect(self, what, good, detail=""):
-        self.checks += 1
-        self.failed += not good
-        print(f"{'ok  ' if good else 'FAIL'} {what} {detail if not good else ''}", flush=True)
 
 
 def last_row(folder):
@@ -222,8 +219,7 @@ def main():
         cases[arguments.case](case)
     finally:
         shutil.rmtree(folder)
-    print(f"{case.checks - case.failed} passed, {case.failed} failed")
-    return 1 if case.failed else 0
+    return case.status()
 
 
 if __name__ == "__main__":

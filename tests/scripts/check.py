@@ -16,20 +16,21 @@ from pathlib import Path
 import yaml
 
 TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(TOP / "tests/scenes"))
+sys.path[:0] = [str(TOP / "tests/scenes"), str(TOP / "tests/support")]
 import hertz_cases  # noqa: E402
 from harness import Results, load_deck  # noqa: E402
+from score import Score  # noqa: E402
 
 HERTZ_CONSTANTS = {"modulus": "1/((1 - 0.3^2)/210e3 + (1 - 0.3^2)/70e3)", "a": "sqrt(4*900*50/(pi*modulus))",
                    "p0": "2*900/(pi*a)"}
 
 
-class Case:
+class Case(Score):
     """Studies and pages of one case in a folder of its own, and the score."""
 
     def __init__(self, program, folder):
+        super().__init__()
         self.program, self.folder = Path(program).resolve(), Path(folder)
-        self.failed = self.checks = 0
 
     def study_file(self, content, name="small"):
         path = self.folder / f"{name}.study.yaml"
@@ -57,11 +58,6 @@ class Case:
 
     def study(self, path, *words):
         return self.run("study", path, "--program", self.program, *words)
-
-    def expect(self, what, good, detail=""):
-        self.checks += 1
-        self.failed += not good
-        print(f"{'ok  ' if good else 'FAIL'} {what} {detail if not good else ''}", flush=True)
 
 
 def table_of(folder):
@@ -274,8 +270,7 @@ def main():
         cases[arguments.case](case)
     finally:
         shutil.rmtree(folder)
-    print(f"{case.checks - case.failed} passed, {case.failed} failed")
-    return 1 if case.failed else 0
+    return case.status()
 
 
 if __name__ == "__main__":

@@ -12,21 +12,6 @@ using namespace amontons::testing;
 
 namespace {
 
-struct Case {
-  ElementType type;
-  Space space;
-};
-
-const std::vector<Case> cases = {
-    {ElementType::Triangle3, Space::PlaneStrain},       {ElementType::Triangle6, Space::PlaneStrain},
-    {ElementType::Quadrilateral4, Space::PlaneStrain},  {ElementType::Quadrilateral9, Space::PlaneStrain},
-    {ElementType::Triangle3, Space::PlaneStress},       {ElementType::Triangle6, Space::PlaneStress},
-    {ElementType::Quadrilateral4, Space::PlaneStress},  {ElementType::Quadrilateral9, Space::PlaneStress},
-    {ElementType::Triangle3, Space::Axisymmetric},      {ElementType::Triangle6, Space::Axisymmetric},
-    {ElementType::Quadrilateral4, Space::Axisymmetric}, {ElementType::Quadrilateral9, Space::Axisymmetric},
-    {ElementType::Tetrahedron4, Space::Solid},          {ElementType::Tetrahedron10, Space::Solid},
-    {ElementType::Hexahedron8, Space::Solid},           {ElementType::Hexahedron27, Space::Solid}};
-
 const Elastic material{100.0, 0.3};
 
 /// The box of unit sides from x = 1 on, which in axisymmetric space is a ring. Lamé's field is too steep there for the
@@ -132,7 +117,7 @@ struct Errors {
 };
 
 /// Lamé's field prescribed all around a box of n cells a side.
-Errors errors(const Case& scene, int n) {
+Errors errors(const ElementCase& scene, int n) {
   const Mesh mesh = box(PETSC_COMM_SELF, scene.type, n);
   const DofLayout layout(mesh, {}, {});
   BulkForm solid(layout, scene.space, {make_law(material, scene.space)});
@@ -172,7 +157,7 @@ Field reproduced(Space space, int order) {
 } // namespace
 
 TEST_CASE("estimated error: zero where the elements have the exact solution, on any number of ranks") {
-  for (const auto& scene : cases) {
+  for (const auto& scene : element_cases) {
     CAPTURE(int(scene.type));
     CAPTURE(int(scene.space));
     const Mesh mesh = box(PETSC_COMM_WORLD, scene.type, 3);
@@ -186,7 +171,7 @@ TEST_CASE("estimated error: zero where the elements have the exact solution, on 
 }
 
 TEST_CASE("estimated error: between half and twice the exact one, with the order of the element") {
-  for (const auto& scene : cases) {
+  for (const auto& scene : element_cases) {
     CAPTURE(int(scene.type));
     CAPTURE(int(scene.space));
     const int order = element_order(scene.type), dim = element_dim(scene.type);
@@ -202,7 +187,7 @@ TEST_CASE("estimated error: between half and twice the exact one, with the order
 }
 
 TEST_CASE("estimated error: the same on any number of ranks") {
-  for (const auto& scene : cases) {
+  for (const auto& scene : element_cases) {
     CAPTURE(int(scene.type));
     CAPTURE(int(scene.space));
     const auto estimate = [&](MPI_Comm comm) {

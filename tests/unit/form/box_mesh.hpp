@@ -3,6 +3,7 @@
 #pragma once
 
 #include "math/reference_element.hpp"
+#include "math/space.hpp"
 #include "mesh/mesh.hpp"
 
 #include <algorithm>
@@ -18,6 +19,22 @@ using Lattice = std::array<int, 3>;
 using Corners = std::vector<Lattice>;
 /// Moves a point of the unit box, (x, y, z) with z = 0 in 2D, to where it shall be.
 using Shape = std::function<std::array<double, 3>(std::array<double, 3>)>;
+
+struct ElementCase {
+  ElementType type;
+  Space space;
+};
+
+/// Every element type in every space that it can be in.
+inline const std::vector<ElementCase> element_cases = {
+    {ElementType::Triangle3, Space::PlaneStrain},       {ElementType::Triangle6, Space::PlaneStrain},
+    {ElementType::Quadrilateral4, Space::PlaneStrain},  {ElementType::Quadrilateral9, Space::PlaneStrain},
+    {ElementType::Triangle3, Space::PlaneStress},       {ElementType::Triangle6, Space::PlaneStress},
+    {ElementType::Quadrilateral4, Space::PlaneStress},  {ElementType::Quadrilateral9, Space::PlaneStress},
+    {ElementType::Triangle3, Space::Axisymmetric},      {ElementType::Triangle6, Space::Axisymmetric},
+    {ElementType::Quadrilateral4, Space::Axisymmetric}, {ElementType::Quadrilateral9, Space::Axisymmetric},
+    {ElementType::Tetrahedron4, Space::Solid},          {ElementType::Tetrahedron10, Space::Solid},
+    {ElementType::Hexahedron8, Space::Solid},           {ElementType::Hexahedron27, Space::Solid}};
 
 /// Lattice places of all nodes of an element from those of its corners (corner functions of order 1 at the reference
 /// nodes; corners are apart by multiples of the order, so middles fall on the lattice).

@@ -3,6 +3,7 @@
 #include "form/bulk.hpp"
 #include "form/loads.hpp"
 #include "material/elastic.hpp"
+#include "point_places.hpp"
 
 #include <doctest/doctest.h>
 
@@ -13,13 +14,9 @@ namespace {
 
 constexpr Elastic soft{7.0, 0.3};
 
-struct Case {
-  ElementType type;
-  Space space;
-};
-constexpr Case cases[] = {{ElementType::Triangle6, Space::PlaneStrain},
-                          {ElementType::Triangle6, Space::Axisymmetric},
-                          {ElementType::Tetrahedron10, Space::Solid}};
+constexpr ElementCase cases[] = {{ElementType::Triangle6, Space::PlaneStrain},
+                                 {ElementType::Triangle6, Space::Axisymmetric},
+                                 {ElementType::Tetrahedron10, Space::Solid}};
 
 /// A box at x > 0 with straight sides and no pattern.
 Mesh rough_mesh(ElementType type) {
@@ -104,13 +101,8 @@ TEST_CASE("a quadratic displacement under its body force is found exactly, with 
     double error = 0, largest = 0;
     solid.for_each_batch(state_of(u), [&](const PointBatch& batch) {
       const std::size_t size = batch.strain.size() / batch.weights.size();
-      const auto points = static_cast<std::size_t>(batch.table->rule->size());
       for (std::size_t p = 0; p < batch.weights.size(); ++p) {
-        std::array<double, 3> x{};
-        const auto nodes = batch.block->cell(batch.first_cell + static_cast<std::int32_t>(p / points));
-        for (std::size_t a = 0; a < nodes.size(); ++a)
-          for (int i = 0; i < mesh.dim; ++i)
-            x[i] += batch.table->value(static_cast<int>(p % points))[a] * mesh.position(nodes[a])[i];
+        const auto x = point_place(mesh, batch, p);
         const auto wanted = problem.strain(x);
         for (std::size_t i = 0; i < size; ++i) {
           error = std::max(error, std::abs(batch.strain[p * size + i] - wanted[i]));
@@ -151,9 +143,9 @@ TEST_CASE("work of a body force on nodes and bubbles is twice the energy, and fo
 
 TEST_CASE("plane stress has no bubbles, and other elements have none") {
   const BodyLoad load{"block", {1.0, 2.0, std::nullopt}};
-  for (const auto& [type, space] :
-       {Case{ElementType::Triangle6, Space::PlaneStress}, Case{ElementType::Triangle3, Space::PlaneStrain},
-        Case{ElementType::Quadrilateral9, Space::PlaneStrain}}) {
+  for (const auto& [type, space] : {ElementCase{ElementType::Triangle6, Space::PlaneStress},
+                                    ElementCase{ElementType::Triangle3, Space::PlaneStrain},
+                                    ElementCase{ElementType::Quadrilateral9, Space::PlaneStrain}}) {
     const Mesh mesh = rough_mesh(type);
     const DofLayout layout(mesh, {}, {});
     BulkForm solid(layout, space, {make_law(soft, space)}, {load});

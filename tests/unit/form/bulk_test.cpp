@@ -14,23 +14,6 @@ namespace {
 
 constexpr Elastic soft{7.0, 0.3};
 
-struct Case {
-  ElementType type;
-  Space space;
-};
-
-std::vector<Case> all_cases() {
-  std::vector<Case> cases;
-  for (const ElementType type :
-       {ElementType::Triangle3, ElementType::Triangle6, ElementType::Quadrilateral4, ElementType::Quadrilateral9})
-    for (const Space space : {Space::PlaneStrain, Space::PlaneStress, Space::Axisymmetric})
-      cases.push_back({type, space});
-  for (const ElementType type :
-       {ElementType::Tetrahedron4, ElementType::Tetrahedron10, ElementType::Hexahedron8, ElementType::Hexahedron27})
-    cases.push_back({type, Space::Solid});
-  return cases;
-}
-
 /// Has the element a cell bubble in this space?
 bool has_bubble(ElementType type, Space space) {
   return (type == ElementType::Triangle6 || type == ElementType::Tetrahedron10) && space != Space::PlaneStress;
@@ -129,7 +112,7 @@ class StiffeningLaw : public BulkLaw {
 } // namespace
 
 TEST_CASE("patch test: a linear displacement gives constant stress and no force inside") {
-  for (const auto& [type, space] : all_cases()) {
+  for (const auto& [type, space] : element_cases) {
     CAPTURE(int(type));
     CAPTURE(int(space));
     const Mesh mesh = small_mesh(type);
@@ -162,7 +145,7 @@ TEST_CASE("patch test: a linear displacement gives constant stress and no force 
 }
 
 TEST_CASE("forces are the derivative of the stored energy, the tangent that of the forces") {
-  for (const auto& [type, space] : all_cases())
+  for (const auto& [type, space] : element_cases)
     for (const double beta : {-1.0, 0.0, 30.0}) { // -1: the plain elastic law
       CAPTURE(int(type));
       CAPTURE(int(space));
@@ -200,7 +183,7 @@ TEST_CASE("forces are the derivative of the stored energy, the tangent that of t
 }
 
 TEST_CASE("the isotropic kernel agrees with the general one") {
-  for (const auto& [type, space] : all_cases()) {
+  for (const auto& [type, space] : element_cases) {
     CAPTURE(int(type));
     CAPTURE(int(space));
     const Mesh mesh = small_mesh(type, PETSC_COMM_SELF, {1, 1, 1});
@@ -214,7 +197,7 @@ TEST_CASE("the isotropic kernel agrees with the general one") {
 }
 
 TEST_CASE("rigid motions need no force, and nothing else is free of force") {
-  for (const auto& [type, space] : all_cases()) {
+  for (const auto& [type, space] : element_cases) {
     CAPTURE(int(type));
     CAPTURE(int(space));
     const Mesh mesh = small_mesh(type, PETSC_COMM_SELF, {1, 1, 1});
@@ -234,7 +217,7 @@ TEST_CASE("rigid motions need no force, and nothing else is free of force") {
 }
 
 TEST_CASE("far rigid motions need no force with a law that stiffens either") {
-  for (const auto& [type, space] : all_cases()) {
+  for (const auto& [type, space] : element_cases) {
     CAPTURE(int(type));
     CAPTURE(int(space));
     const Mesh mesh = small_mesh(type, PETSC_COMM_SELF, {1, 1, 1});
@@ -256,7 +239,7 @@ TEST_CASE("axisymmetric: moving away from the axis costs hoop strain") {
 }
 
 TEST_CASE("nodal stress of a linear displacement is its constant stress at every node, on any number of ranks") {
-  for (const auto& [type, space] : all_cases()) {
+  for (const auto& [type, space] : element_cases) {
     CAPTURE(int(type));
     CAPTURE(int(space));
     const Mesh mesh = small_mesh(type, PETSC_COMM_WORLD);

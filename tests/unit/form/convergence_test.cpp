@@ -4,6 +4,7 @@
 #include "form/loads.hpp"
 #include "material/elastic.hpp"
 #include "mesh/build.hpp"
+#include "point_places.hpp"
 
 #include <doctest/doctest.h>
 #include <numbers>
@@ -69,11 +70,6 @@ double cylinder_error(ElementType type, Space space, double nu, int n) {
   return displacement_error(mesh, u, exact) / solution.radial(inner);
 }
 
-struct Case {
-  ElementType type;
-  Space space;
-};
-
 /// A divergence-free field: stress 2 G ε and body force -div σ do not depend on Poisson's ratio, so neither should the
 /// error of the approximation.
 struct Isochoric {
@@ -134,13 +130,8 @@ Errors stress_errors(BulkForm& solid, const Mesh& mesh, const Eigen::VectorXd& u
   Errors sums{};
   solid.for_each_batch(state_of(u), [&](const PointBatch& batch) {
     const std::size_t size = batch.stress.size() / batch.weights.size();
-    const auto points = static_cast<std::size_t>(batch.table->rule->size());
     for (std::size_t p = 0; p < batch.weights.size(); ++p) {
-      std::array<double, 3> x{};
-      const auto nodes = batch.block->cell(batch.first_cell + static_cast<std::int32_t>(p / points));
-      for (std::size_t a = 0; a < nodes.size(); ++a)
-        for (int i = 0; i < mesh.dim; ++i)
-          x[i] += batch.table->value(static_cast<int>(p % points))[a] * mesh.position(nodes[a])[i];
+      const auto x = point_place(mesh, batch, p);
       auto difference = isochoric_stress(solid.space(), exact, lame.G, x);
       for (std::size_t i = 0; i < size; ++i)
         difference[i] -= batch.stress[p * size + i];
@@ -197,16 +188,7 @@ Errors isochoric_errors(const Mesh& mesh, Space space, double nu) {
 } // namespace
 
 TEST_CASE("thick cylinder: displacements converge with the order of the element plus one") {
-  const Case cases[] = {
-      {ElementType::Triangle3, Space::PlaneStrain},       {ElementType::Triangle6, Space::PlaneStrain},
-      {ElementType::Quadrilateral4, Space::PlaneStrain},  {ElementType::Quadrilateral9, Space::PlaneStrain},
-      {ElementType::Triangle3, Space::PlaneStress},       {ElementType::Triangle6, Space::PlaneStress},
-      {ElementType::Quadrilateral4, Space::PlaneStress},  {ElementType::Quadrilateral9, Space::PlaneStress},
-      {ElementType::Triangle3, Space::Axisymmetric},      {ElementType::Triangle6, Space::Axisymmetric},
-      {ElementType::Quadrilateral4, Space::Axisymmetric}, {ElementType::Quadrilateral9, Space::Axisymmetric},
-      {ElementType::Tetrahedron4, Space::Solid},          {ElementType::Tetrahedron10, Space::Solid},
-      {ElementType::Hexahedron8, Space::Solid},           {ElementType::Hexahedron27, Space::Solid}};
-  for (const auto& [type, space] : cases) {
+  for (const auto& [type, space] : element_cases) {
     CAPTURE(int(type));
     CAPTURE(int(space));
     const int order = element_order(type), n = order == 1 ? 6 : 3;
@@ -217,7 +199,7 @@ TEST_CASE("thick cylinder: displacements converge with the order of the element 
 }
 
 TEST_CASE("no locking at nu = 0.4999: the errors of an isochoric solution are those of nu = 0.3") {
-  const Case cases[] = {
+  const ElementCase cases[] = {
       {ElementType::Triangle6, Space::PlaneStrain},       {ElementType::Triangle6, Space::Axisymmetric},
       {ElementType::Quadrilateral4, Space::PlaneStrain},  {ElementType::Quadrilateral9, Space::PlaneStrain},
       {ElementType::Quadrilateral4, Space::Axisymmetric}, {ElementType::Quadrilateral9, Space::Axisymmetric},
