@@ -36,6 +36,13 @@ NullSpaceHandle rigid_body_modes(const DofLayout& layout);
 /// balanced, which, unlike the first residual of an increment, do not become small when the guess is good.
 SNESConvergedReason judge_residual(SNES snes, const Problem& problem, PetscInt iteration, double norm);
 
+/// Backtracking goes back until |F|² has fallen by `alpha` of what the tangent promises. A tangent that is no
+/// derivative promises nothing: with `accept_anything` its full step passes. Nothing happens with other line searches.
+constexpr PetscReal accept_anything = -1e30;
+void ask_for_decrease(SNES snes, PetscReal alpha);
+/// That alpha as the options have it.
+PetscReal decrease_asked_for(SNES snes);
+
 /// How a finished SNES went, without outer iterations and factorizations.
 SolveOutcome outcome_of(SNES snes, const Problem& problem);
 
@@ -57,7 +64,6 @@ class Newton {
   static PetscErrorCode evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, void* self);
   static PetscErrorCode test_convergence(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                          SNESConvergedReason* reason, void* self);
-  void ask_for_decrease(bool is_asked);
 
   Problem& problem_;
   std::function<bool()> interrupted_;
