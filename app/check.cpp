@@ -25,7 +25,7 @@ Unknowns count_unknowns(const Deck& deck, const RawMesh& raw) {
   Unknowns count;
   count.displacement = double(raw.dim) * double(nodes.size()) * std::exp2(raw.dim * deck.mesh.refine);
   for (const auto& contact : deck.contact) {
-    if (!std::holds_alternative<SemismoothDeck>(contact.enforce)) continue;
+    if (!std::holds_alternative<SemismoothDeck>(contact.enforce) || is_condensed(contact.enforce)) continue;
     std::set<std::int64_t> vertices;
     for (const auto& sub : raw.subs)
       if (raw.groups[sub.group].name == contact.slave.value && raw.groups[sub.group].dim == raw.dim - 1)
@@ -62,7 +62,7 @@ std::string memory_text(double bytes) {
 
 const char* enforce_name(const EnforceDeck& enforce) {
   const char* const names[] = {"semismooth", "uzawa", "penalty", "vi"}; // in the order of EnforceDeck
-  return names[enforce.index()];
+  return is_condensed(enforce) ? "semismooth, dual basis" : names[enforce.index()];
 }
 
 const char* space_text(Space space) {

@@ -115,7 +115,18 @@ TaggedRule<EnforceDeck> enforce_rule() {
   ObjectRule<SemismoothDeck> semismooth;
   semismooth.optional("alpha", &SemismoothDeck::alpha, number("1", Range::above(0)),
                       alpha + " Its influence on the solution vanishes with the mesh; larger: smaller gaps between "
-                              "nodes, rougher pressure.");
+                              "nodes, rougher pressure. None with the dual basis.");
+  WordRule<MultiplierBasis> basis;
+  basis
+      .word("nodal", MultiplierBasis::Nodal,
+            "Linear on slave facets; unknowns of a saddle-point system, one a node, and as many more as there are "
+            "dimensions with friction.")
+      .word("dual", MultiplierBasis::Dual,
+            "Functions dual to the displacements of the slave, so that every multiplier is what one node is out of "
+            "balance by and none is an unknown. Serves all pairs of a deck or none.");
+  semismooth.optional("basis", &SemismoothDeck::basis, basis, "What the multipliers are made of.",
+                      "S. Hueeber, B. I. Wohlmuth, Comput. Methods Appl. Mech. Engrg. 194 (2005) 3147-3166; "
+                      "M. Gitterle et al., Int. J. Numer. Meth. Engng. 84 (2010) 543-571.");
   ObjectRule<UzawaDeck> uzawa;
   uzawa
       .optional("alpha", &UzawaDeck::alpha, number("1", Range::above(0)),
@@ -336,6 +347,11 @@ bool measures_path(const Deck& deck) {
            const auto* automatic = std::get_if<AutoIncrements>(&step.increments);
            return automatic && automatic->path_tolerance;
          });
+}
+
+bool is_condensed(const EnforceDeck& enforce) {
+  const auto* semismooth = std::get_if<SemismoothDeck>(&enforce);
+  return semismooth && semismooth->basis == MultiplierBasis::Dual;
 }
 
 const std::string& enforce_advice() {

@@ -69,11 +69,18 @@ struct UzawaDeck {
   double tolerance = 1e-8; // relative change of the multipliers at which the outer loop stops
   int max_iterations = 100;
 };
+/// Of the multipliers: unknown nodal values of the slave's corner functions, or of functions dual to the displacements'
+/// and eliminated node by node.
+enum class MultiplierBasis { Nodal, Dual };
 struct SemismoothDeck {
   double alpha = 1.0;
+  MultiplierBasis basis = MultiplierBasis::Nodal;
 };
 struct ViDeck {};
 using EnforceDeck = std::variant<SemismoothDeck, UzawaDeck, PenaltyDeck, ViDeck>;
+
+/// Semismooth with the dual basis: no multiplier is an unknown.
+bool is_condensed(const EnforceDeck& enforce);
 
 struct ClosestPointDeck {};
 struct SlaveNormalDeck {};

@@ -36,6 +36,10 @@ IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted
     return;
   }
   linear_solver_ = choose_linear_solver(*scene.problem);
+  if (scene.conditions) {
+    condensed_ = std::make_unique<CondensedNewton>(*scene.problem, *scene.conditions, std::move(interrupted));
+    return;
+  }
   newton_ = std::make_unique<Newton>(*scene.problem, std::move(interrupted));
   uzawa_ = make_uzawa(scene, *newton_);
 }
@@ -44,6 +48,7 @@ SolveOutcome IncrementSolver::solve(double target) {
   AMT_PETSC(VecCopy(accepted_, unknowns_));
   scene_.problem->begin_increment(target, unknowns_);
   if (bounded_) return bounded_->solve(unknowns_);
+  if (condensed_) return condensed_->solve(unknowns_);
   return uzawa_ ? uzawa_->solve(unknowns_) : newton_->solve(unknowns_);
 }
 
@@ -108,6 +113,7 @@ void IncrementSolver::revisit(const SolvedState& state) {
   for (std::size_t i = 0; i < state.forces_on_bounds.size(); ++i)
     scene_.contacts[i]->hold_multipliers(state.forces_on_bounds[i]);
   scene_.problem->revisit(state.time, unknowns_);
+  if (condensed_) condensed_->recover(unknowns_);
 }
 
 } // namespace amontons

@@ -4,6 +4,7 @@
 
 #include "scene.hpp"
 #include "solve/bounded_newton.hpp"
+#include "solve/condensed_newton.hpp"
 #include "solve/uzawa.hpp"
 
 #include <functional>
@@ -52,7 +53,8 @@ class IncrementSolver {
  private:
   Scene& scene_;
   std::string linear_solver_;
-  std::unique_ptr<BoundedNewton> bounded_; // with bounds, else newton_
+  std::unique_ptr<BoundedNewton> bounded_;     // with bounds, or
+  std::unique_ptr<CondensedNewton> condensed_; // with conditions on relative motions, else newton_
   std::unique_ptr<Newton> newton_;
   std::unique_ptr<UzawaLoop> uzawa_;
   VecHandle unknowns_, accepted_;

@@ -151,7 +151,7 @@ void Ledger::accept(Vec unknowns) {
     auto& contact = *scene_.contacts[i];
     contact_work += contact.work_of_displacement(state);
     const bool is_rigid = std::holds_alternative<RigidMaster>(contact.pair().master);
-    if (!is_rigid && !contact.tangential()) continue;
+    if (!is_rigid && !contact.pair().friction) continue;
     const auto totals = contact.totals(state);
     dissipated_[i] += totals.dissipation;
     contact_error += totals.path_error + std::abs(totals.turning);

@@ -18,6 +18,7 @@ const char* const axes[] = {"x", "y", "z"};
 std::string enforcement_name(const ContactPair& pair) {
   if (std::holds_alternative<Penalty>(pair.enforcement)) return "penalty";
   if (std::holds_alternative<BoundConstraint>(pair.enforcement)) return "vi";
+  if (std::holds_alternative<CondensedSemismooth>(pair.enforcement)) return "semismooth, dual basis";
   return std::holds_alternative<Uzawa>(pair.enforcement) ? "uzawa" : "semismooth";
 }
 
@@ -61,7 +62,7 @@ std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledge
       columns.push_back(prefix + "force_" + axes[c]);
     for (const char* quantity : {"area", "max_pressure", "penetration"})
       columns.push_back(prefix + quantity);
-    if (!contact->tangential()) continue;
+    if (!contact->pair().friction) continue;
     for (const char* quantity : {"stick_area", "slip_area", "open_area", "dissipation", "dissipation_total"})
       columns.push_back(prefix + quantity);
     for (int c = 0; c < d; ++c)
@@ -91,7 +92,7 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
     const auto& pair = totals[i];
     row.insert(row.end(), pair.force.begin(), pair.force.begin() + d);
     row.insert(row.end(), {pair.area, pair.max_pressure, pair.largest_penetration});
-    if (!scene.contacts[i]->tangential()) continue;
+    if (!scene.contacts[i]->pair().friction) continue;
     row.insert(row.end(),
                {pair.stick_area, pair.slip_area, pair.open_area, pair.dissipation, ledger.dissipated_by_pair()[i]});
     row.insert(row.end(), pair.tangential_force.begin(), pair.tangential_force.begin() + d);
@@ -188,7 +189,7 @@ nlohmann::ordered_json contact_results(const Scene& scene, const Ledger& ledger,
             {"area", pair.area},
             {"max_pressure", pair.max_pressure},
             {"largest_penetration", pair.largest_penetration}};
-    if (scene.contacts[i]->tangential())
+    if (scene.contacts[i]->pair().friction)
       json["friction"] = {{"force", pair.tangential_force},
                           {"stick_area", pair.stick_area},
                           {"slip_area", pair.slip_area},
@@ -218,13 +219,14 @@ nlohmann::ordered_json describe_scene(const Scene& scene) {
   nlohmann::ordered_json effects;
   effects["contact"] = !scene.contacts.empty();
   effects["friction"] = std::any_of(scene.contacts.begin(), scene.contacts.end(),
-                                    [](const auto* contact) { return contact->tangential() != nullptr; });
+                                    [](const auto* contact) { return contact->pair().friction.has_value(); });
   effects["finite_kinematics"] = scene.deck.kinematics == Kinematics::Finite;
   effects["nonlinear_materials"] = !scene.bulk->tangent_is_constant();
   effects["inertia"] = false;
   effects["unknown_multipliers"] = scene.layout->num_extra() > 0;
   effects["outer_loop"] = scene.multipliers != nullptr;
   effects["bounded_unknowns"] = scene.bounds != nullptr;
+  effects["condensed_multipliers"] = scene.conditions != nullptr;
   effects["loads"] = scene.loads != nullptr;
   nlohmann::ordered_json json;
   json["dim"] = mesh.dim;

@@ -34,6 +34,31 @@ NodalArray nodal_multipliers(const Scene& scene, const PairReport& contact, cons
   return array;
 }
 
+/// Does friction keep its history at nodes, and not at quadrature points?
+bool has_nodal_friction(const PairReport& contact) {
+  return contact.pair().friction && std::holds_alternative<CondensedSemismooth>(contact.pair().enforcement);
+}
+bool has_point_friction(const PairReport& contact) { return contact.pair().friction && !has_nodal_friction(contact); }
+
+/// The friction history of a pair's nodes at all local nodes of the mesh, and back.
+NodalArray node_rows(const Scene& scene, const PairReport& contact, const ContactHistory& history) {
+  constexpr int size = PointHistory::row_size;
+  NodalArray array{size, std::vector<double>(std::size_t(scene.mesh.num_local()) * size, 0.0)};
+  for (std::size_t i = 0; i < history.nodes.size(); ++i) {
+    std::vector<double> row;
+    history.nodes[i].append_to(row);
+    std::copy(row.begin(), row.end(), array.values.begin() + std::ptrdiff_t(contact.nodes().nodes[i]) * size);
+  }
+  return array;
+}
+std::vector<PointHistory> node_histories(const NodalArray& array, const PairReport& contact) {
+  std::vector<PointHistory> histories;
+  for (const auto node : contact.nodes().nodes)
+    histories.push_back(PointHistory::from_row(
+        std::span(array.values).subspan(std::size_t(node) * PointHistory::row_size, PointHistory::row_size)));
+  return histories;
+}
+
 /// One row a point: its reference place, by which it is found again, and its history.
 FacetArray point_rows(const PairReport& contact, const ContactHistory& history) {
   const auto& points = contact.points();
@@ -106,7 +131,8 @@ void restore_pair(const Scene& scene, PairReport& contact, const Checkpoint& che
         history.tangential_multipliers[c][i] = row[c + 1];
     }
   }
-  if (contact.tangential())
+  if (has_nodal_friction(contact)) history.nodes = node_histories(checkpoint.nodal.at(history_name(contact)), contact);
+  if (has_point_friction(contact))
     together(scene.mesh.comm,
              [&] { history.points = histories_from(checkpoint.facets.at(history_name(contact)), contact); });
   contact.restore(history);
@@ -145,7 +171,8 @@ Checkpoint make_checkpoint(const Scene& scene, const Ledger& ledger, Vec accepte
     const auto history = contact->accepted();
     if (has_multipliers(*contact))
       checkpoint.nodal[multiplier_name(*contact)] = nodal_multipliers(scene, *contact, history);
-    if (contact->tangential()) checkpoint.facets[history_name(*contact)] = point_rows(*contact, history);
+    if (has_nodal_friction(*contact)) checkpoint.nodal[history_name(*contact)] = node_rows(scene, *contact, history);
+    if (has_point_friction(*contact)) checkpoint.facets[history_name(*contact)] = point_rows(*contact, history);
   }
   checkpoint.global["largest_force"] = {scene.problem->largest_force()};
   ledger.save(checkpoint);

@@ -120,8 +120,12 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
                           },
                           [&](const ViDeck&) { pair.enforcement = BoundConstraint{}; },
                           [&](const SemismoothDeck& semismooth) {
-                            pair.enforcement = Semismooth{static_cast<int>(fields.size())};
                             pair.alpha = semismooth.alpha;
+                            if (semismooth.basis == MultiplierBasis::Dual) {
+                              pair.enforcement = CondensedSemismooth{};
+                              return;
+                            }
+                            pair.enforcement = Semismooth{static_cast<int>(fields.size())};
                             fields.push_back(multiplier_nodes(mesh, pair.name, pair.slave));
                             if (declared.friction) fields.insert(fields.end(), mesh.dim, NodeField(fields.back()));
                           }},
@@ -249,13 +253,14 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   }
   if (!scene->floating.empty()) forms.push_back(std::make_unique<SupportForm>(layout, floating, stiffness));
   std::vector<ContactForm*> uzawa;
-  std::vector<MortarForm*> bounded;
+  std::vector<MortarForm*> bounded, condensed;
   for (auto& pair : pairs) {
     const Phase search("search");
-    if (std::holds_alternative<BoundConstraint>(pair.enforcement)) {
+    const bool is_bound = std::holds_alternative<BoundConstraint>(pair.enforcement);
+    if (is_bound || std::holds_alternative<CondensedSemismooth>(pair.enforcement)) {
       auto form = std::make_unique<MortarForm>(layout, std::move(pair));
       scene->contacts.push_back(form.get());
-      bounded.push_back(form.get());
+      (is_bound ? bounded : condensed).push_back(form.get());
       forms.push_back(std::move(form));
       continue;
     }
@@ -267,6 +272,7 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   if (!uzawa.empty()) scene->multipliers = std::make_unique<UzawaMultipliers>(mesh, uzawa);
   scene->problem = std::make_unique<Problem>(layout, std::move(forms), std::move(conditions.prescribed));
   if (!bounded.empty()) scene->bounds = std::make_unique<MortarTransform>(*scene->problem, std::move(bounded));
+  if (!condensed.empty()) scene->conditions = std::make_unique<CondensedContact>(*scene->problem, condensed);
   return scene;
 }
 

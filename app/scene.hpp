@@ -2,6 +2,7 @@
 // for.
 #pragma once
 
+#include "contact/condensed_contact.hpp"
 #include "contact/mortar_transform.hpp"
 #include "contact/uzawa_multipliers.hpp"
 #include "deck.hpp"
@@ -27,6 +28,7 @@ struct Scene {
   std::vector<PairReport*> contacts;             // owned by the problem
   std::unique_ptr<UzawaMultipliers> multipliers; // absent without `uzawa` pairs
   std::unique_ptr<MortarTransform> bounds;       // absent without `vi` pairs
+  std::unique_ptr<CondensedContact> conditions;  // absent without `semismooth` pairs with the dual basis
   std::vector<std::string> floating;             // bodies held by contact alone
 
   /// Energy stored in all bodies. Collective.

@@ -53,7 +53,8 @@ class ContactForm : public Form, public PairReport {
   /// This rank's parts of ∫ N_i (σ − λ_i) and ∫ N_i at nodes(). Collective.
   void multiplier_defect(const State& state, std::vector<double>& defect, std::vector<double>& mass);
 
-  const TangentialPart* tangential() const override { return tangential_.get(); }
+  /// Absent without friction.
+  const TangentialPart* tangential() const { return tangential_.get(); }
   TangentialPart* tangential() { return tangential_.get(); }
 
   ContactSamples samples(const State& state) override;

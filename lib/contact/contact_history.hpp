@@ -10,7 +10,8 @@
 
 namespace amontons {
 
-/// Friction at a point of the slave surface. All vectors are Cartesian, so nothing depends on how facets are numbered.
+/// Friction at a point or a node of the slave surface. All vectors are Cartesian, so nothing depends on how facets are
+/// numbered.
 struct PointHistory {
   TangentVector traction{};     // what the slave exerts, stress
   std::array<double, 3> jump{}; // u_slave − u_master − rigid shift, length
@@ -32,9 +33,10 @@ struct NormalHistory {
 
 struct ContactHistory {
   double time = 0.0;
-  std::vector<double> multipliers;                         // at ContactForm::nodes(), stress
+  std::vector<double> multipliers;                         // at PairReport::nodes(), stress
   std::vector<std::vector<double>> tangential_multipliers; // [component][node], stress; empty without friction
-  std::vector<PointHistory> points;                        // of this rank; empty without friction
+  std::vector<PointHistory> points;                        // of this rank; empty without friction or with `nodes`
+  std::vector<PointHistory> nodes;                         // at MortarForm::nodes() with friction, instead of `points`
   std::vector<NormalHistory> normals;                      // of this rank; empty without a curved rigid master
 };
 

@@ -36,15 +36,17 @@ struct SegmentIntegration {
 };
 using Integration = std::variant<FacetIntegration, SegmentIntegration>;
 
-/// Where λ comes from: nowhere, an outer loop, an unknown of the system (extra field number `field` of the layout), or
-/// the force on a bound of the normal motion.
+/// Where λ comes from: nowhere, an outer loop, an unknown of the system (extra field number `field` of the layout), the
+/// force on a bound of the normal motion, or the out-of-balance force on a node's relative motion (semismooth with the
+/// dual basis).
 struct Penalty {};
 struct Uzawa {};
 struct Semismooth {
   int field;
 };
 struct BoundConstraint {};
-using Enforcement = std::variant<Penalty, Uzawa, Semismooth, BoundConstraint>;
+struct CondensedSemismooth {};
+using Enforcement = std::variant<Penalty, Uzawa, Semismooth, BoundConstraint, CondensedSemismooth>;
 
 /// Friction of a pair. Unknown tangential multipliers (`semismooth`) are the dim extra fields from `field` on.
 struct Friction {

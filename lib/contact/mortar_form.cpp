@@ -1,7 +1,8 @@
-// Traction on the slave t = Σ_k λ_k n_k ψ_k, λ_k <= 0: the force of node k on the slave is λ_k n_k ∫ ψ_k N_k, at its
-// place, because ∫ ψ_k N_a vanishes for the others; on the master λ_k n_k P_kj D_k. Work is done on
+// Traction on the slave t = Σ_k (λ_k n_k + λ_t,k) ψ_k, λ_k <= 0: the force of node k on the slave is its vector times
+// ∫ ψ_k N_k, at its place, because ∫ ψ_k N_a vanishes for the others; on the master the vector times P_kj D_k. Work is
+// done on
 //   gap_k = g_k + n_k · (c_k − Σ_j P_kj u_j),  P_kj = ∫ ψ_k N_j^master / D_k,
-// whatever the number of ranks: each adds what its own points see.
+// and on the tangential part of that motion, whatever the number of ranks: each adds what its own points see.
 #include "contact/mortar_form.hpp"
 
 #include "geometry/projection.hpp"
@@ -29,13 +30,16 @@ NodeField slave_nodes(const Mesh& mesh, const ContactPair& pair) {
 MortarForm::MortarForm(const DofLayout& layout, ContactPair pair)
     : layout_(layout), pair_(std::move(pair)), nodes_(slave_nodes(layout.mesh(), pair_)),
       place_(layout.mesh().num_local(), -1), points_(layout, pair_),
-      constraint_space_(layout.mesh(), std::vector<NodeField>(6, nodes_)), gap_space_(layout.mesh(), {nodes_}) {
+      constraint_space_(layout.mesh(), std::vector<NodeField>(8, nodes_)), gap_space_(layout.mesh(), {nodes_}) {
   for (std::size_t i = 0; i < nodes_.nodes.size(); ++i)
     place_[nodes_.nodes[i]] = static_cast<std::int32_t>(i);
   multipliers_.assign(nodes_.nodes.size(), 0.0);
   multipliers_old_ = multipliers_;
   find_facets();
   find_constraints();
+  if (pair_.friction)
+    friction_ = std::make_unique<NodalFriction>(
+        layout_, pair_, nodes_, points_.has_rigid_master() ? points_.rigid_shift() : std::array<double, 3>{});
 }
 
 void MortarForm::find_facets() {
@@ -109,7 +113,7 @@ Eigen::VectorXd MortarForm::whole_integrals(std::int32_t f) const {
 /// Collective.
 void MortarForm::find_constraints() {
   const auto& points = points_.points();
-  std::vector<std::vector<double>> sums(6, std::vector<double>(nodes_.nodes.size(), 0.0));
+  std::vector<std::vector<double>> sums(8, std::vector<double>(nodes_.nodes.size(), 0.0));
   for (std::int32_t f = 0; f < slave().size(); ++f) {
     const auto& facet = facets_[f];
     const auto nodes = slave().facet(f);
@@ -123,8 +127,11 @@ void MortarForm::find_constraints() {
       for (std::size_t i = facet.begin; i < facet.end; ++i) {
         if (!is_covered(points[i])) continue;
         const auto row = static_cast<Eigen::Index>(i - facet.begin);
+        const double part = points[i].weight * shape(row, k);
         for (int c = 0; c < 3; ++c)
-          sums[1 + c][at] += points[i].weight * shape(row, k) * points[i].normal[c];
+          sums[1 + c][at] += part * points[i].normal[c];
+        sums[6][at] += part * points[i].epsilon;
+        sums[7][at] += part * facet.size;
         sums[4][at] += points[i].weight * facet.dual->values(row, k) * points[i].gap0;
       }
     }
@@ -138,7 +145,9 @@ void MortarForm::find_constraints() {
     if (sums[0][i] <= least_cover * sums[5][i] || length == 0.0) continue;
     constraints_[i] = {.weight = sums[0][i],
                        .normal = {sums[1][i] / length, sums[2][i] / length, sums[3][i] / length},
-                       .gap = sums[4][i] / sums[0][i]};
+                       .gap = sums[4][i] / sums[0][i],
+                       .epsilon = sums[6][i] / sums[0][i],
+                       .size = sums[7][i] / sums[0][i]};
   }
 }
 
@@ -211,7 +220,49 @@ std::vector<double> MortarForm::nodal_gaps(const State& state) {
 ContactHistory MortarForm::accepted() const {
   ContactHistory history;
   history.multipliers = multipliers_old_;
+  if (friction_) friction_->save(history);
   return history;
+}
+
+void MortarForm::restore(const ContactHistory& history) {
+  multipliers_ = multipliers_old_ = history.multipliers;
+  if (friction_) friction_->restore(history);
+}
+
+void MortarForm::commit(const State& state) {
+  multipliers_old_ = multipliers_;
+  if (friction_) friction_->commit(state.time);
+}
+
+void MortarForm::roll_back() {
+  multipliers_ = multipliers_old_;
+  if (friction_) friction_->roll_back();
+}
+
+void MortarForm::hold_friction(const NodalFriction::Claim& claim) {
+  std::vector<double> epsilon;
+  for (const auto& constraint : constraints_)
+    epsilon.push_back(constraint.epsilon);
+  friction_->hold(claim, multipliers_, epsilon);
+}
+
+void MortarForm::release() {
+  multipliers_.assign(multipliers_.size(), 0.0);
+  if (friction_) friction_->release();
+}
+
+/// What a node's multipliers exert on the slave's motion.
+std::array<double, 3> MortarForm::traction(std::size_t place) const {
+  auto traction = constraints_[place].normal;
+  for (int c = 0; c < 3; ++c)
+    traction[c] = multipliers_[place] * traction[c] + (friction_ ? friction_->traction(place)[c] : 0.0);
+  return traction;
+}
+
+bool MortarForm::is_loaded(std::int32_t facet) const {
+  const auto nodes = slave().facet(facet);
+  return facets_[facet].dual &&
+         std::any_of(nodes.begin(), nodes.end(), [&](std::int32_t node) { return multipliers_[place_[node]] != 0.0; });
 }
 
 void MortarForm::add_residual(const State&, Residual& residual) {
@@ -221,18 +272,16 @@ void MortarForm::add_residual(const State&, Residual& residual) {
   for (std::int32_t f = 0; f < slave().size(); ++f) {
     const auto& facet = facets_[f];
     const auto nodes = slave().facet(f);
-    const bool is_loaded =
-        std::any_of(nodes.begin(), nodes.end(), [&](std::int32_t node) { return multipliers_[place_[node]] != 0.0; });
-    for (std::size_t i = facet.begin; is_loaded && facet.dual && i < facet.end; ++i) {
+    if (!is_loaded(f)) continue;
+    for (std::size_t i = facet.begin; i < facet.end; ++i) {
       const auto& point = points_.points()[i];
       if (!is_covered(point)) continue;
       std::array<double, 3> force{};
       for (std::size_t k = 0; k < nodes.size(); ++k) {
-        const auto at = place_[nodes[k]];
-        const double part =
-            point.weight * multipliers_[at] * facet.dual->values(static_cast<Eigen::Index>(i - facet.begin), k);
+        const auto exerted = traction(place_[nodes[k]]);
+        const double part = point.weight * facet.dual->values(static_cast<Eigen::Index>(i - facet.begin), k);
         for (int c = 0; c < 3; ++c)
-          force[c] += part * constraints_[at].normal[c];
+          force[c] += part * exerted[c];
       }
       const auto shape = points_.slave_shape(point);
       for (std::size_t a = 0; a < nodes.size(); ++a)
@@ -251,6 +300,16 @@ void MortarForm::add_residual(const State&, Residual& residual) {
   }
 }
 
+TangentialSums MortarForm::friction_sums() const {
+  TangentialSums sums;
+  if (!friction_) return sums;
+  const auto shift = points_.has_rigid_master() ? points_.rigid_shift() : std::array<double, 3>{};
+  for (std::int32_t f = 0; f < slave().size(); ++f)
+    for (std::size_t k = 0; k < slave().facet(f).size(); ++k)
+      friction_->add_to(place_[slave().facet(f)[k]], share(f, k), shift, sums);
+  return sums;
+}
+
 double MortarForm::work_of_displacement(const State& state) {
   const auto gaps = nodal_gaps(state);
   double work = 0.0;
@@ -259,6 +318,7 @@ double MortarForm::work_of_displacement(const State& state) {
       const auto at = place_[slave().facet(f)[k]];
       if (multipliers_[at] < 0.0) work += share(f, k) * multipliers_[at] * (gaps[at] - constraints_[at].gap);
     }
+  work += friction_sums().work;
   MPI_Allreduce(MPI_IN_PLACE, &work, 1, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
   return work;
 }
@@ -271,6 +331,12 @@ double MortarForm::work_of_displacement(const State& state) {
 ContactSamples MortarForm::samples(const State& state) {
   const auto gaps = nodal_gaps(state);
   ContactSamples samples;
+  if (friction_) {
+    const auto names = state_names(pair_.friction->law);
+    samples.has_friction = true;
+    samples.state_names.assign(names.begin(), names.end());
+    samples.states.assign(names.size(), {});
+  }
   for (std::int32_t f = 0; f < slave().size(); ++f) {
     const auto nodes = slave().facet(f);
     const std::size_t e = element_dim(slave().types[f]);
@@ -285,7 +351,10 @@ ContactSamples MortarForm::samples(const State& state) {
       samples.facet_size.push_back(facets_[f].size);
       samples.pressure.push_back(multipliers_[at] < 0.0 ? -multipliers_[at] : 0.0);
       samples.gap.push_back(gaps[at]);
-      samples.status.push_back(multipliers_[at] < 0.0 ? ContactStatus::Slip : ContactStatus::Open);
+      samples.status.push_back(friction_                ? friction_->status(at)
+                               : multipliers_[at] < 0.0 ? ContactStatus::Slip
+                                                        : ContactStatus::Open);
+      if (friction_) friction_->sample(at, samples);
     }
   }
   for (std::size_t i = 0; i < nodes_.nodes.size(); ++i)
@@ -298,34 +367,52 @@ ContactSamples MortarForm::samples(const State& state) {
 
 ContactTotals MortarForm::totals(const State& state) {
   const auto gaps = nodal_gaps(state);
-  double sums[7] = {}; // force, moment, area
+  double sums[16] = {}; // force, moment, area, open area; with friction its force and sums
   double largest[2] = {};
   for (std::int32_t f = 0; f < slave().size(); ++f)
     for (std::size_t k = 0; k < slave().facet(f).size(); ++k) {
       const auto at = place_[slave().facet(f)[k]];
       if (constraints_[at].weight > 0.0) largest[1] = std::max(largest[1], -gaps[at] / facets_[f].size);
-      if (multipliers_[at] >= 0.0) continue;
+      if (multipliers_[at] >= 0.0) {
+        sums[7] += share(f, k);
+        continue;
+      }
       const auto& place = facets_[f].places[k];
+      const auto exerted = traction(at);
       double force[3];
       for (int c = 0; c < 3; ++c)
-        force[c] = -multipliers_[at] * share(f, k) * constraints_[at].normal[c];
+        force[c] = -share(f, k) * exerted[c];
       for (int c = 0; c < 3; ++c) {
         sums[c] += force[c];
         sums[3 + c] += place[(c + 1) % 3] * force[(c + 2) % 3] - place[(c + 2) % 3] * force[(c + 1) % 3];
+        if (friction_) sums[8 + c] -= share(f, k) * friction_->traction(at)[c];
       }
       sums[6] += share(f, k);
       largest[0] = std::max(largest[0], -multipliers_[at]);
     }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
+  const auto friction = friction_sums();
+  sums[11] = friction.stick_area;
+  sums[12] = friction.slip_area;
+  sums[13] = friction.dissipation;
+  sums[14] = friction.mismatch;
+  sums[15] = friction.change;
+  MPI_Allreduce(MPI_IN_PLACE, sums, 16, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
   MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, layout_.mesh().comm);
   ContactTotals totals;
   for (int c = 0; c < 3; ++c) {
     totals.force[c] = sums[c];
     totals.moment[c] = sums[3 + c];
+    totals.tangential_force[c] = sums[8 + c];
   }
   totals.area = sums[6];
   totals.max_pressure = largest[0];
   totals.largest_penetration = largest[1];
+  if (!friction_) return totals;
+  totals.open_area = sums[7];
+  totals.stick_area = sums[11];
+  totals.slip_area = sums[12];
+  totals.dissipation = sums[13];
+  totals.path_error = std::abs(sums[14]) + sums[15];
   return totals;
 }
 

@@ -1,13 +1,15 @@
-// A frictionless contact pair whose tractions are given from outside: nodal multipliers with the dual basis, found by a
-// solver of variational inequalities as the forces on bounds (MortarTransform). Adds their forces to the residual and
-// nothing to the tangent.
+// A contact pair whose tractions are given from outside: nodal multipliers with the dual basis, found by a solver of
+// variational inequalities as the forces on bounds (MortarTransform), or by a semismooth Newton method as what relative
+// motions are out of balance by (CondensedContact). Adds their forces to the residual and nothing to the tangent.
 #pragma once
 
 #include "contact/contact_points.hpp"
 #include "contact/dual_basis.hpp"
+#include "contact/nodal_friction.hpp"
 #include "contact/pair_report.hpp"
 
 #include <map>
+#include <memory>
 #include <vector>
 
 namespace amontons {
@@ -22,12 +24,14 @@ class MortarForm : public Form, public PairReport {
   void add_residual(const State& state, Residual& residual) override;
   void add_tangent(const State&, Tangent&) override {}
   bool tangent_is_constant() const override { return true; }
-  void commit(const State&) override { multipliers_old_ = multipliers_; }
-  void roll_back() override { multipliers_ = multipliers_old_; }
+  /// That of the solver's equations: sliding takes its traction from the pressure, and not the other way round.
+  bool tangent_is_symmetric() const override { return !friction_; }
+  void commit(const State& state) override;
+  void roll_back() override;
   std::any history() const override { return accepted(); }
   void restore(const std::any& history) override { restore(std::any_cast<const ContactHistory&>(history)); }
   ContactHistory accepted() const override;
-  void restore(const ContactHistory& history) override { multipliers_ = multipliers_old_ = history.multipliers; }
+  void restore(const ContactHistory& history) override;
 
   const ContactPair& pair() const override { return pair_; }
   /// All nodes of the slave surface that this rank knows; for order 2 the controls that go with them.
@@ -35,6 +39,12 @@ class MortarForm : public Form, public PairReport {
   const std::vector<double>& multipliers() const override { return multipliers_; }
   void hold_multipliers(std::vector<double> multipliers) override { multipliers_ = std::move(multipliers); }
   const ContactPoints& points() const override { return points_; }
+  /// Absent without friction.
+  NodalFriction* friction() const { return friction_.get(); }
+  /// The normal multipliers must be held already.
+  void hold_friction(const NodalFriction::Claim& claim);
+  /// No traction anywhere.
+  void release();
   ContactSamples samples(const State& state) override;
   ContactTotals totals(const State& state) override;
   double work_of_displacement(const State& state) override;
@@ -42,9 +52,10 @@ class MortarForm : public Form, public PairReport {
 
   /// What the constraint of a node is made of, over all ranks: gap + normal · (c_slave − Σ P u_master) >= 0.
   struct Constraint {
-    double weight = 0.0;            // D = ∫ ψ = ∫ N over the covered part, area; 0: no master covers the node
-    std::array<double, 3> normal{}; // unit mean of the points' normals, weighted with N
-    double gap = 0.0;               // initial: ∫ ψ g0 / D, length
+    double weight = 0.0;              // D = ∫ ψ = ∫ N over the covered part, area; 0: no master covers the node
+    std::array<double, 3> normal{};   // unit mean of the points' normals, weighted with N
+    double gap = 0.0;                 // initial: ∫ ψ g0 / D, length
+    double epsilon = 0.0, size = 0.0; // means over the points around: augmentation, force / volume; h of the facets
   };
   const std::vector<Constraint>& constraints() const { return constraints_; }
   /// This rank's part of the rows of P = D⁻¹ M, one a node of nodes(): node of master() -> coefficient.
@@ -72,6 +83,9 @@ class MortarForm : public Form, public PairReport {
   void find_constraints();
   std::vector<double> nodal_gaps(const State& state);
   bool is_covered(const ContactPoint& point) const { return point.master != ContactPoint::none; }
+  TangentialSums friction_sums() const;
+  bool is_loaded(std::int32_t facet) const;
+  std::array<double, 3> traction(std::size_t place) const;
 
   const DofLayout& layout_;
   ContactPair pair_;
@@ -83,6 +97,7 @@ class MortarForm : public Form, public PairReport {
   std::vector<Constraint> constraints_;
   std::vector<double> multipliers_, multipliers_old_; // traction, <= 0
   double rigid_time_ = 0.0;
+  std::unique_ptr<NodalFriction> friction_;
 };
 
 } // namespace amontons

@@ -22,6 +22,12 @@ namespace amontons {
 
 namespace {
 
+/// As a deck says it.
+std::string enforce_text(const MortarForm& pair) {
+  return std::holds_alternative<BoundConstraint>(pair.pair().enforcement) ? "enforce: {vi: {}}"
+                                                                          : "enforce: {semismooth: {basis: dual}}";
+}
+
 /// A node of whose normal less than this is free has no constraint: the supports decide where it goes.
 constexpr double least_free_normal = 0.1;
 
@@ -99,36 +105,57 @@ void MortarTransform::check_pairs() const {
       for (std::size_t i = 0; i < pair.nodes().nodes.size(); ++i) {
         const auto node = pair.nodes().nodes[i];
         if (pair.constraints()[i].weight == 0.0) continue;
-        if (!frame(pair, i).bounded) {
-          for (int c = 0; c < dim_; ++c)
-            if (hold(node, c) == Hold::Tied && std::abs(pair.constraints()[i].normal[c]) > least_free_normal)
-              throw UserError("the contact pair '" + name + "' with enforce: {vi: {}}: its slave node at " +
-                              node_text(node) + " moves with a group that has a resultant along the contact normal. " +
-                              "Exchange slave and master, or use `enforce: {semismooth: {}}`.");
-          continue;
-        }
+        check_tied(pair, i);
+        if (!frame(pair, i).bounded) continue;
         if (const auto* other = std::exchange(owner[node], &pair))
-          throw UserError(
-              "the contact pairs '" + other->pair().name + "' and '" + name +
-              "' with enforce: {vi: {}} share the slave node at " + node_text(node) +
-              ", which can have one master only. Leave a facet between the slave surfaces, exchange slave " +
-              "and master of one pair, or use `enforce: {semismooth: {}}`.");
+          throw UserError("the contact pairs '" + other->pair().name + "' and '" + name + "' with " +
+                          enforce_text(pair) + " share the slave node at " + node_text(node) +
+                          ", which can have one master only. Leave a facet between the slave surfaces, exchange " +
+                          "slave and master of one pair, or use `enforce: {semismooth: {}}`.");
       }
       if (covered[p] > 0.0 && bounded[p] == 0.0)
-        throw UserError("the contact pair '" + name + "' with enforce: {vi: {}}: all nodes of its slave surface '" +
-                        pair.pair().slave + "' have their displacement along the contact normal prescribed. Exchange " +
+        throw UserError("the contact pair '" + name + "' with " + enforce_text(pair) +
+                        ": all nodes of its slave surface '" + pair.pair().slave +
+                        "' have their displacement along the contact normal prescribed. Exchange " +
                         "slave and master, or use `enforce: {semismooth: {}}`.");
     }
   });
 }
 
-MortarTransform::Frame MortarTransform::frame(const MortarForm& pair, std::size_t place) const {
+std::array<double, 3> NodeFrame::axis(int component) const {
+  std::array<double, 3> axis{}, mirror = normal;
+  mirror[host] -= 1.0;
+  const double square = mirror[0] * mirror[0] + mirror[1] * mirror[1] + mirror[2] * mirror[2];
+  axis[component] = 1.0;
+  for (int r = 0; r < 3 && square > 0.0; ++r)
+    axis[r] -= 2.0 * mirror[r] * mirror[component] / square;
+  return axis;
+}
+
+/// A component that a group shares has no unknown of its own to be replaced by a relative motion.
+void MortarTransform::check_tied(const MortarForm& pair, std::size_t i) const {
+  const auto node = pair.nodes().nodes[i];
+  const bool is_bounded = frame(pair, i).bounded;
+  for (int c = 0; c < dim_; ++c) {
+    if (hold(node, c) != Hold::Tied) continue;
+    const bool along = !is_bounded && std::abs(pair.constraints()[i].normal[c]) > least_free_normal;
+    if (along || pair.pair().friction)
+      throw UserError("the contact pair '" + pair.pair().name + "' with " + enforce_text(pair) +
+                      ": its slave node at " + node_text(node) + " moves with a group that has a resultant " +
+                      (along ? "along the contact normal" : "across the contact normal, where friction acts") +
+                      ". Exchange slave and master, or use `enforce: {semismooth: {}}`.");
+  }
+}
+
+NodeFrame MortarTransform::frame(const MortarForm& pair, std::size_t place) const {
   const auto node = pair.nodes().nodes[place];
   const auto& constraint = pair.constraints()[place];
-  Frame frame;
+  NodeFrame frame;
   if (constraint.weight == 0.0) return frame;
-  for (int c = 0; c < dim_; ++c)
-    if (hold(node, c) == Hold::Free) frame.normal[c] = constraint.normal[c];
+  for (int c = 0; c < dim_; ++c) {
+    frame.is_free[c] = hold(node, c) == Hold::Free;
+    if (frame.is_free[c]) frame.normal[c] = constraint.normal[c];
+  }
   frame.length = std::hypot(frame.normal[0], frame.normal[1], frame.normal[2]);
   if (frame.length < least_free_normal) return frame;
   frame.bounded = true;
@@ -136,7 +163,7 @@ MortarTransform::Frame MortarTransform::frame(const MortarForm& pair, std::size_
   double smallest = 2.0;
   for (int c = 0; c < dim_; ++c) {
     frame.normal[c] /= frame.length;
-    if (hold(node, c) != Hold::Free || frame.normal[c] >= smallest) continue;
+    if (!frame.is_free[c] || frame.normal[c] >= smallest) continue;
     smallest = frame.normal[c];
     frame.host = c;
   }
@@ -174,18 +201,16 @@ MatHandle MortarTransform::reflections() const {
       const auto& frame = frames_[p][i];
       if (!frame.bounded || node >= mesh.num_owned) continue;
       turned[node] = 1;
-      auto mirror = frame.normal;
-      mirror[frame.host] -= 1.0;
-      const double square = mirror[0] * mirror[0] + mirror[1] * mirror[1] + mirror[2] * mirror[2];
-      for (int r = 0; r < dim_; ++r)
-        for (int c = 0; c < dim_; ++c) {
-          const bool is_free = hold(node, r) == Hold::Free && hold(node, c) == Hold::Free;
-          if (!is_free && r != c) continue;
-          double value = r == c ? 1.0 : 0.0;
-          if (is_free && square > 0.0) value -= 2.0 * mirror[r] * mirror[c] / square;
-          const PetscInt first = layout_.first_equation() + PetscInt(node) * dim_;
-          entries.add(first + r, first + c, value);
+      const PetscInt first = layout_.first_equation() + PetscInt(node) * dim_;
+      for (int c = 0; c < dim_; ++c) {
+        if (!frame.is_free[c]) {
+          entries.add(first + c, first + c, 1.0);
+          continue;
         }
+        const auto axis = frame.axis(c);
+        for (int r = 0; r < dim_; ++r)
+          if (frame.is_free[r]) entries.add(first + r, first + c, axis[r]);
+      }
     }
   for (PetscInt local = 0; local < layout_.num_owned(); ++local)
     if (local >= PetscInt(mesh.num_owned) * dim_ || !turned[local / dim_])
@@ -321,7 +346,8 @@ void MortarTransform::build() {
   AMT_PETSC(MatNorm(next, NORM_FROBENIUS, &size));
   for (std::size_t level = 0; size > 0.0; ++level) {
     if (level > pairs_.size())
-      throw UserError("the contact pairs with enforce: {vi: {}} form a ring: a slave node follows a master that in the "
+      throw UserError("the contact pairs with " + enforce_text(*pairs_.front()) +
+                      " form a ring: a slave node follows a master that in the "
                       "end follows the slave. Exchange slave and master of one of the pairs, or use `enforce: "
                       "{semismooth: {}}`.");
     AMT_PETSC(MatAXPY(transform_, 1.0, next, DIFFERENT_NONZERO_PATTERN));
@@ -369,7 +395,7 @@ void MortarTransform::hold_forces(Vec forces) {
 
 void MortarTransform::release() {
   for (auto* pair : pairs_)
-    pair->hold_multipliers(std::vector<double>(pair->nodes().nodes.size(), 0.0));
+    pair->release();
 }
 
 } // namespace amontons

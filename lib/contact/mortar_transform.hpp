@@ -1,6 +1,7 @@
-// The change of variables that turns non-penetration of all `vi` pairs into bounds on single unknowns (B. I. Wohlmuth,
-// R. Krause, SIAM J. Sci. Comput. 25 (2003) 324-347; S. Hüeber, B. I. Wohlmuth, Comput. Methods Appl. Mech. Engrg. 194
-// (2005) 3147-3166). Derivation at the top of mortar_transform.cpp.
+// The change of variables that turns non-penetration of all pairs with the dual basis into bounds on single unknowns,
+// and their tangential motion into the unknowns next to them (B. I. Wohlmuth, R. Krause, SIAM J. Sci. Comput. 25 (2003)
+// 324-347; S. Hüeber, B. I. Wohlmuth, Comput. Methods Appl. Mech. Engrg. 194 (2005) 3147-3166). Derivation at the top
+// of mortar_transform.cpp.
 #pragma once
 
 #include "contact/mortar_form.hpp"
@@ -11,11 +12,25 @@
 
 namespace amontons {
 
+/// How a node stands to its constraint: the unit normal within the components that are free, and its length before it
+/// was made one. The unknowns in place of the node's free components are relative motions along axis(c): the bounded
+/// one, along the normal, in place of `host`, the others in tangential directions.
+struct NodeFrame {
+  bool bounded = false;
+  int host = 0;
+  double length = 0.0;
+  std::array<double, 3> normal{};
+  std::array<bool, 3> is_free{};
+
+  /// Column of the reflection that takes the host's direction to the normal; `component` is free.
+  std::array<double, 3> axis(int component) const;
+};
+
 class MortarTransform : public BoundedUnknowns {
  public:
   /// The forms belong to the problem, which must outlive this object. Throws UserError where two pairs would bind the
-  /// same slave node, where a resultant holds a slave node along its normal, where no node of a pair is free to move
-  /// along its normal, and where pairs form a ring. Collective.
+  /// same slave node, where a resultant holds a slave node along its normal, or with friction in any direction, where
+  /// no node of a pair is free to move along its normal, and where pairs form a ring. Collective.
   MortarTransform(const Problem& problem, std::vector<MortarForm*> pairs);
 
   bool update(double time) override;
@@ -25,21 +40,18 @@ class MortarTransform : public BoundedUnknowns {
   void hold_forces(Vec forces) override;
   void release() override;
 
+  const std::vector<MortarForm*>& pairs() const { return pairs_; }
+  /// At the nodes() of pair `p`, as of the last update.
+  const std::vector<NodeFrame>& frames(std::size_t p) const { return frames_[p]; }
+
  private:
   enum class Hold : std::uint8_t { Free, Prescribed, Tied };
-  /// How a node stands to its bound: the unit normal within the components that are free, and its length before it was
-  /// made one; the bounded unknown takes the place of component `host`.
-  struct Frame {
-    bool bounded = false;
-    int host = 0;
-    double length = 0.0;
-    std::array<double, 3> normal{};
-  };
   struct Entries; // of a matrix, to be summed up
-  Frame frame(const MortarForm& pair, std::size_t place) const;
+  NodeFrame frame(const MortarForm& pair, std::size_t place) const;
   Hold hold(std::int32_t node, int component) const { return hold_[std::size_t(node) * dim_ + component]; }
   void find_held();
   void check_pairs() const;
+  void check_tied(const MortarForm& pair, std::size_t place) const;
   void build();
   MatHandle reflections() const;
   MatHandle couplings() const;
@@ -59,7 +71,7 @@ class MortarTransform : public BoundedUnknowns {
   std::vector<Hold> hold_;                        // per local node and component
   std::vector<double> facet_totals_;              // per local node: of all pairs
   std::vector<std::vector<double>> facet_counts_; // per pair and node: facets that meet there, over all ranks
-  std::vector<std::vector<Frame>> frames_;        // per pair and node
+  std::vector<std::vector<NodeFrame>> frames_;    // per pair and node
   MatHandle transform_, inverse_;
   VecHandle lower_;
 };

@@ -5,13 +5,23 @@
 #include "contact/contact_pair.hpp"
 #include "contact/contact_points.hpp"
 #include "contact/contact_samples.hpp"
-#include "contact/tangential_part.hpp"
 #include "form/form.hpp"
 
 #include <array>
 #include <vector>
 
 namespace amontons {
+
+/// What friction adds up to over the points of this rank.
+struct TangentialSums {
+  double stick_area = 0.0, slip_area = 0.0;
+  double dissipation = 0.0; // ∫ σ_t · slip over the increment, >= 0
+  double work = 0.0;        // ∫ σ_t · (u_slave − u_master), a rigid master's motion not included
+  /// The trapezoidal work of the shear traction over the increment, less what the end of the increment says,
+  /// dissipation and stored energy: what book-keeping by the ends of increments is off at the interface.
+  double mismatch = 0.0;
+  double change = 0.0; // Σ ½ |Δσ_t · Δg_t|
+};
 
 /// Totals of one pair over all ranks.
 struct ContactTotals {
@@ -49,8 +59,6 @@ class PairReport {
   virtual void restore(const ContactHistory& history) = 0;
   /// What of an accepted state follows from its unknowns and need not be in a checkpoint. Collective.
   virtual void remember(const State&) {}
-  /// Absent without friction.
-  virtual const TangentialPart* tangential() const { return nullptr; }
 
   /// What the solver claims, point by point, with the nodal pressure summed over ranks. Collective.
   virtual ContactSamples samples(const State& state) = 0;

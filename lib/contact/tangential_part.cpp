@@ -54,13 +54,6 @@ TangentVector tangential(const std::array<double, 3>& v, const std::array<double
   return {v[0] - along * n[0], v[1] - along * n[1], v[2] - along * n[2]};
 }
 
-/// Direction of the traction times the slip.
-TangentVector slip_vector(const FrictionResponse& response) {
-  const double size = std::hypot(response.traction[0], response.traction[1], response.traction[2]);
-  const double factor = size > 0.0 ? response.slip / size : 0.0;
-  return {factor * response.traction[0], factor * response.traction[1], factor * response.traction[2]};
-}
-
 } // namespace
 
 TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair, const ContactPoints& points,
@@ -392,8 +385,6 @@ double TangentialPart::stored_energy() const {
   return energy;
 }
 
-/// mismatch: the trapezoidal work of the shear traction over the increment, less what the end of the increment says,
-/// dissipation and stored energy: what book-keeping by the ends of increments is off at the interface.
 TangentialSums TangentialPart::sums() const {
   TangentialSums sums;
   const auto& points = points_.points();

@@ -5,6 +5,7 @@
 #include "contact/contact_pair.hpp"
 #include "contact/contact_points.hpp"
 #include "contact/contact_samples.hpp"
+#include "contact/pair_report.hpp"
 #include "form/form.hpp"
 #include "friction/return_mapping.hpp"
 
@@ -18,15 +19,6 @@ namespace amontons {
 struct ContactBlock {
   std::size_t size;
   std::ptrdiff_t normal_multipliers, tangential_multipliers, master;
-};
-
-/// Sums over the points of this rank.
-struct TangentialSums {
-  double stick_area = 0.0, slip_area = 0.0;
-  double dissipation = 0.0; // ∫ σ_t · slip over the increment, >= 0
-  double work = 0.0;        // ∫ σ_t · (u_slave − u_master), a rigid master's motion not included
-  double mismatch = 0.0;    // see TangentialPart::sums
-  double change = 0.0;      // Σ ½ |Δσ_t · Δg_t|
 };
 
 class TangentialPart {

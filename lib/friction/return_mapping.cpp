@@ -18,6 +18,12 @@ void set_isotropic(TangentMatrix& matrix, double value) {
 
 } // namespace
 
+std::array<double, 3> slip_vector(const FrictionResponse& response) {
+  const double size = std::hypot(response.traction[0], response.traction[1], response.traction[2]);
+  const double factor = size > 0.0 ? response.slip / size : 0.0;
+  return {factor * response.traction[0], factor * response.traction[1], factor * response.traction[2]};
+}
+
 FrictionResponse return_map(const FrictionLaw& law, const FrictionContext& context, const TangentVector& q, double p,
                             double epsilon, const FrictionState& state_old) {
   const double r = std::hypot(q[0], q[1], q[2]);

@@ -26,6 +26,9 @@ struct FrictionResponse {
       dtraction_dp{}; // ∂σ_t / ∂p: the coupling to pressure, which makes tangents of frictional contact unsymmetric
 };
 
+/// Direction of the traction times the slip: length.
+std::array<double, 3> slip_vector(const FrictionResponse& response);
+
 /// q = λ_t + ε Δg_t in the tangent plane; p = |σ_n| >= 0; ε > 0, stress per length.
 ///
 ///   stick  |q| <= τ(p, 0):  σ_t = q,  s = 0

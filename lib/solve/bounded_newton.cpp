@@ -34,10 +34,10 @@ std::string choose_bounded_solver(const Problem& problem) {
 }
 
 BoundedNewton::BoundedNewton(Problem& problem, BoundedUnknowns& bounds, std::function<bool()> interrupted)
-    : problem_(problem), bounds_(bounds), interrupted_(std::move(interrupted)), tangent_(problem.new_matrix()),
-      unknowns_(problem.layout().new_vector()), changed_(problem.layout().new_vector()),
-      residual_(problem.layout().new_vector()), changed_residual_(problem.layout().new_vector()),
-      upper_(problem.layout().new_vector()), forces_(problem.layout().new_vector()) {
+    : problem_(problem), bounds_(bounds), interrupted_(std::move(interrupted)), whole_(problem),
+      changed_(problem.layout().new_vector()), residual_(problem.layout().new_vector()),
+      changed_residual_(problem.layout().new_vector()), upper_(problem.layout().new_vector()),
+      forces_(problem.layout().new_vector()) {
   AMT_PETSC(VecSet(upper_, PETSC_INFINITY));
   AMT_PETSC(PetscOptionsGetInt(nullptr, nullptr, "-vi_free_iterations", &free_iterations_, nullptr));
   AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
@@ -58,79 +58,25 @@ BoundedNewton::BoundedNewton(Problem& problem, BoundedUnknowns& bounds, std::fun
   if (!is_factorization && !is_semismooth()) preconditioner_ = std::make_unique<WholePreconditioner>(snes_);
 }
 
-void BoundedNewton::take_transform() {
-  AMT_PETSC(MatDuplicate(bounds_.transform(), MAT_COPY_VALUES, variation_.put()));
-  const auto varies = problem_.layout().new_vector(), diagonal = problem_.layout().new_vector();
-  AMT_PETSC(MatGetDiagonal(variation_, diagonal));
-  {
-    VecArray flags(varies), kept(diagonal);
-    const PetscInt first = problem_.layout().first_equation();
-    for (PetscInt i = 0; i < flags.size(); ++i) {
-      flags[i] = problem_.is_prescribed(first + i) ? 0.0 : 1.0;
-      if (flags[i] == 0.0) kept[i] = 1.0;
-    }
-  }
-  AMT_PETSC(MatDiagonalScale(variation_, nullptr, varies));
-  AMT_PETSC(MatDiagonalSet(variation_, diagonal, INSERT_VALUES));
-  changed_tangent_.reset();
-  if (!preconditioner_) return;
-  // û of a rigid motion u is T⁻¹ u.
-  const auto modes = rigid_body_modes(problem_.layout());
-  PetscInt count = 0;
-  const Vec* vectors = nullptr;
-  AMT_PETSC(MatNullSpaceGetVecs(modes, nullptr, &count, &vectors));
-  std::vector<VecHandle> changed;
-  std::vector<Vec> basis;
-  for (PetscInt i = 0; i < count; ++i) {
-    changed.push_back(problem_.layout().new_vector());
-    AMT_PETSC(MatMult(bounds_.inverse(), vectors[i], changed.back()));
-    for (const Vec other : basis) { // Gram-Schmidt
-      PetscScalar along = 0.0;
-      AMT_PETSC(VecDot(changed.back(), other, &along));
-      AMT_PETSC(VecAXPY(changed.back(), -along, other));
-    }
-    AMT_PETSC(VecNormalize(changed.back(), nullptr));
-    basis.push_back(changed.back());
-  }
-  NullSpaceHandle space;
-  AMT_PETSC(MatNullSpaceCreate(problem_.comm(), PETSC_FALSE, count, basis.data(), space.put()));
-  preconditioner_->take_modes(std::move(space));
-}
-
-/// Tᵀ K T, with the pattern of the last one if there is one.
-void BoundedNewton::transform_tangent() {
-  const Phase phase("matrix");
-  if (changed_tangent_) {
-    Mat matrix = changed_tangent_;
-    AMT_PETSC(MatPtAP(tangent_, variation_, MAT_REUSE_MATRIX, PETSC_DEFAULT, &matrix));
-  } else {
-    AMT_PETSC(MatPtAP(tangent_, variation_, MAT_INITIAL_MATRIX, PETSC_DEFAULT, changed_tangent_.put()));
-    given_tangent_.reset();
-    if (is_semismooth()) AMT_PETSC(MatDuplicate(changed_tangent_, MAT_DO_NOT_COPY_VALUES, given_tangent_.put()));
-    Mat given = given_tangent_ ? given_tangent_.get() : changed_tangent_.get();
-    AMT_PETSC(SNESSetJacobian(snes_, given, given, evaluate_tangent, this));
-  }
-  AMT_PETSC(MatSetOption(changed_tangent_, MAT_SYMMETRIC, PETSC_TRUE));
-}
-
-/// Tᵀ r(T û).
-void BoundedNewton::find_residual(Vec changed, Vec result) {
-  AMT_PETSC(MatMult(bounds_.transform(), changed, unknowns_));
-  evaluate_in_domain(snes_, problem_, unknowns_, residual_);
-  AMT_PETSC(MatMultTranspose(variation_, residual_, result));
+/// After the first tangent with another T.
+void BoundedNewton::take_matrix() {
+  given_tangent_.reset();
+  if (is_semismooth()) AMT_PETSC(MatDuplicate(whole_.matrix(), MAT_DO_NOT_COPY_VALUES, given_tangent_.put()));
+  Mat given = given_tangent_ ? given_tangent_.get() : whole_.matrix();
+  AMT_PETSC(SNESSetJacobian(snes_, given, given, evaluate_tangent, this));
 }
 
 PetscErrorCode BoundedNewton::evaluate_residual(SNES, Vec changed, Vec result, void* self) {
   auto& newton = *static_cast<BoundedNewton*>(self);
-  return guarded(newton.kept_, [&] { newton.find_residual(changed, result); });
+  return guarded(newton.kept_,
+                 [&] { end_outside_domain(newton.snes_, newton.whole_.residual(changed, result), result); });
 }
 
 PetscErrorCode BoundedNewton::evaluate_tangent(SNES, Vec changed, Mat, Mat, void* self) {
   auto& newton = *static_cast<BoundedNewton*>(self);
   return guarded(newton.kept_, [&] {
-    AMT_PETSC(MatMult(newton.bounds_.transform(), changed, newton.unknowns_));
-    if (newton.problem_.tangent(newton.unknowns_, newton.tangent_)) newton.transform_tangent();
-    if (newton.given_tangent_) AMT_PETSC(MatCopy(newton.changed_tangent_, newton.given_tangent_, SAME_NONZERO_PATTERN));
+    newton.whole_.tangent(changed);
+    if (newton.given_tangent_) AMT_PETSC(MatCopy(newton.whole_.matrix(), newton.given_tangent_, SAME_NONZERO_PATTERN));
   });
 }
 
@@ -190,7 +136,7 @@ void BoundedNewton::descend(SNESLineSearch search) {
 }
 
 void BoundedNewton::start_from(Vec unknowns) {
-  AMT_PETSC(MatMult(bounds_.inverse(), unknowns, changed_));
+  whole_.to_changed(unknowns, changed_);
   VecArray values(changed_);
   VecReader lower(bounds_.lower()), forces(forces_);
   for (PetscInt i = 0; i < values.size(); ++i)
@@ -200,7 +146,7 @@ void BoundedNewton::start_from(Vec unknowns) {
 /// Forces on the bounds that are touched, by the test of the primal-dual active set.
 Vec BoundedNewton::contact_forces() {
   const auto diagonal = problem_.layout().new_vector();
-  AMT_PETSC(MatGetDiagonal(changed_tangent_, diagonal));
+  AMT_PETSC(MatGetDiagonal(whole_.matrix(), diagonal));
   VecArray forces(forces_);
   VecReader values(changed_), lower(bounds_.lower()), residual(changed_residual_), stiffness(diagonal);
   for (PetscInt i = 0; i < forces.size(); ++i) {
@@ -214,9 +160,13 @@ SolveOutcome BoundedNewton::solve(Vec unknowns) {
   kept_ = nullptr;
   const Phase phase("linear solver");
   bounds_.release();
-  const bool moved = bounds_.update(problem_.time()) || !variation_;
-  if (moved) take_transform();
-  if (problem_.tangent(unknowns, tangent_) || moved) transform_tangent();
+  const bool moved = bounds_.update(problem_.time()) || !whole_.has_transform();
+  if (moved) {
+    whole_.take_transform(bounds_.transform(), bounds_.inverse());
+    if (preconditioner_) preconditioner_->take_modes(whole_.modes());
+  }
+  whole_.tangent_at(unknowns);
+  if (moved) take_matrix();
   AMT_PETSC(SNESVISetVariableBounds(snes_, bounds_.lower(), upper_));
   start_from(unknowns);
   const PetscErrorCode code = SNESSolve(snes_, nullptr, changed_);
@@ -225,8 +175,8 @@ SolveOutcome BoundedNewton::solve(Vec unknowns) {
   SolveOutcome outcome = outcome_of(snes_, problem_);
   outcome.factorizations = outcome.newton;
   if (!outcome.converged) return outcome;
-  find_residual(changed_, changed_residual_);
-  AMT_PETSC(VecCopy(unknowns_, unknowns));
+  whole_.residual(changed_, changed_residual_);
+  AMT_PETSC(VecCopy(whole_.unknowns(), unknowns));
   bounds_.hold_forces(contact_forces());
   problem_.residual(unknowns, residual_);
   double norm = 0.0;

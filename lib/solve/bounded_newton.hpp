@@ -5,6 +5,7 @@
 #pragma once
 
 #include "form/bounded_unknowns.hpp"
+#include "solve/changed_problem.hpp"
 #include "solve/newton.hpp"
 #include "solve/whole_preconditioner.hpp"
 
@@ -31,22 +32,18 @@ class BoundedNewton {
   static PetscErrorCode test_convergence(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                          SNESConvergedReason* reason, void* self);
   static PetscErrorCode search_line(SNESLineSearch search, void* self);
-  void find_residual(Vec changed, Vec result);
   void descend(SNESLineSearch search);
-  void take_transform();
-  void transform_tangent();
+  void take_matrix();
   void start_from(Vec unknowns);
   Vec contact_forces();
 
   Problem& problem_;
   BoundedUnknowns& bounds_;
   std::function<bool()> interrupted_;
+  ChangedProblem whole_;
   SnesHandle snes_;
-  MatHandle tangent_;         // K
-  MatHandle variation_;       // T without the columns of prescribed displacements, which do not vary
-  MatHandle changed_tangent_; // Tᵀ K T
-  MatHandle given_tangent_;   // its copy for the semismooth method, which scales it in place
-  VecHandle unknowns_, changed_, residual_, changed_residual_, upper_, forces_;
+  MatHandle given_tangent_; // a copy of the tangent for the semismooth method, which scales it in place
+  VecHandle changed_, residual_, changed_residual_, upper_, forces_;
   std::unique_ptr<WholePreconditioner> preconditioner_;
   std::exception_ptr kept_;
   /// Iterations that take their full step without asking whether the energy falls (-vi_free_iterations): nearly all

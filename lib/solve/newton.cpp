@@ -96,10 +96,10 @@ NullSpaceHandle rigid_body_modes(const DofLayout& layout) {
   return modes;
 }
 
-void evaluate_in_domain(SNES snes, Problem& problem, Vec unknowns, Vec result) {
-  if (problem.residual(unknowns, result)) return;
+void end_outside_domain(SNES snes, bool exists, Vec residual) {
+  if (exists) return;
   // Both: SNES looks for the reason where the norm is not finite.
-  AMT_PETSC(VecSet(result, PETSC_INFINITY));
+  AMT_PETSC(VecSet(residual, PETSC_INFINITY));
   AMT_PETSC(SNESSetFunctionDomainError(snes));
 }
 
@@ -110,6 +110,16 @@ SNESConvergedReason judge_residual(SNES snes, const Problem& problem, PetscInt i
   if (!std::isfinite(norm)) return SNES_DIVERGED_FNORM_NAN;
   if (norm <= std::max(rtol * problem.force_scale(), problem.rounding())) return SNES_CONVERGED_FNORM_RELATIVE;
   return iteration >= max_iterations ? SNES_DIVERGED_MAX_IT : SNES_CONVERGED_ITERATING;
+}
+
+void ask_for_decrease(SNES snes, PetscReal alpha) {
+  if (const auto search = backtracking(snes)) AMT_PETSC(SNESLineSearchBTSetAlpha(search, alpha));
+}
+
+PetscReal decrease_asked_for(SNES snes) {
+  PetscReal alpha = 0.0;
+  if (const auto search = backtracking(snes)) AMT_PETSC(SNESLineSearchBTGetAlpha(search, &alpha));
+  return alpha;
 }
 
 SolveOutcome outcome_of(SNES snes, const Problem& problem) {
@@ -142,27 +152,21 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   // an earlier solve, with stol |u|, and takes any residual for converged.
   AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
-  if (const auto search = backtracking(snes_)) AMT_PETSC(SNESLineSearchBTGetAlpha(search, &sufficient_decrease_));
+  sufficient_decrease_ = decrease_asked_for(snes_);
   if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
-}
-
-/// Backtracking goes back until |F|² has fallen by alpha of what the tangent promises. A tangent that is no derivative
-/// promises nothing: with a large negative alpha its full step passes.
-void Newton::ask_for_decrease(bool is_asked) {
-  constexpr PetscReal accept_anything = -1e30;
-  if (const auto search = backtracking(snes_))
-    AMT_PETSC(SNESLineSearchBTSetAlpha(search, is_asked ? sufficient_decrease_ : accept_anything));
 }
 
 PetscErrorCode Newton::evaluate_residual(SNES, Vec unknowns, Vec result, void* self) {
   auto& newton = *static_cast<Newton*>(self);
-  return guarded(newton.kept_, [&] { evaluate_in_domain(newton.snes_, newton.problem_, unknowns, result); });
+  return guarded(newton.kept_,
+                 [&] { end_outside_domain(newton.snes_, newton.problem_.residual(unknowns, result), result); });
 }
 
 PetscErrorCode Newton::evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, void* self) {
   auto& newton = *static_cast<Newton*>(self);
   return guarded(newton.kept_, [&] {
-    newton.ask_for_decrease(!newton.problem_.is_first_guess());
+    const bool is_guess = newton.problem_.is_first_guess();
+    ask_for_decrease(newton.snes_, is_guess ? accept_anything : newton.sufficient_decrease_);
     if (newton.problem_.tangent(unknowns, matrix)) ++newton.factorizations_;
   });
 }

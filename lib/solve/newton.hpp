@@ -32,12 +32,20 @@ std::string choose_linear_solver(const Problem& problem);
 /// Rigid-body modes, which multigrid needs to coarsen elasticity well. Collective.
 NullSpaceHandle rigid_body_modes(const DofLayout& layout);
 
-/// The residual, or where there is none a domain error of the SNES, which ends the solve. Collective.
-void evaluate_in_domain(SNES snes, Problem& problem, Vec unknowns, Vec result);
+/// Where a residual does not exist (see Problem::residual): makes it a domain error of the SNES, which ends the solve.
+/// Collective.
+void end_outside_domain(SNES snes, bool exists, Vec residual);
 
 /// Whether to go on at a residual of this norm: converged when it is small (snes_rtol) against the forces that are
 /// balanced, which, unlike the first residual of an increment, do not become small when the guess is good.
 SNESConvergedReason judge_residual(SNES snes, const Problem& problem, PetscInt iteration, double norm);
+
+/// Backtracking goes back until |F|² has fallen by `alpha` of what the tangent promises. A tangent that is no
+/// derivative promises nothing: with `accept_anything` its full step passes. Nothing happens with other line searches.
+constexpr PetscReal accept_anything = -1e30;
+void ask_for_decrease(SNES snes, PetscReal alpha);
+/// That alpha as the options have it.
+PetscReal decrease_asked_for(SNES snes);
 
 /// How a finished SNES went, without outer iterations and factorizations.
 SolveOutcome outcome_of(SNES snes, const Problem& problem);
@@ -60,7 +68,6 @@ class Newton {
   static PetscErrorCode evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, void* self);
   static PetscErrorCode test_convergence(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                          SNESConvergedReason* reason, void* self);
-  void ask_for_decrease(bool is_asked);
 
   Problem& problem_;
   std::function<bool()> interrupted_;
