@@ -28,6 +28,8 @@ CASES = {
 }
 for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case
+for scene, case in vi_cases.UNLOAD.items():
+    CASES[scene]["vi_unload"] = case
 
 
 def main():
