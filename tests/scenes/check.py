@@ -11,6 +11,7 @@ from pathlib import Path
 import block_cases
 import friction_cases
 import hertz_cases
+import obstacle_cases
 import other_cases
 import patch_cases
 import vi_cases
@@ -23,9 +24,12 @@ CASES = {
     **friction_cases.CASES,
     **block_cases.CASES,
     **vi_cases.CASES,
+    **obstacle_cases.CASES,
 }
 for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case
+for scene, case in vi_cases.UNLOAD.items():
+    CASES[scene]["vi_unload"] = case
 
 
 def main():

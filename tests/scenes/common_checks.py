@@ -34,3 +34,15 @@ def ranks_agree(bench, scene, changes=None):
             exact = reference.surface_sorted(pair, "pressure").ravel()
             error = np.nanmax(np.abs(results.surface_sorted(pair, "pressure").ravel() - exact))
             bench.below(f"{ranks} ranks: pressure of {pair}", error / np.nanmax(exact), 1e-8)
+
+
+def there_and_back(bench, pair, area, force):
+    """Area and force of a pair grow up to the largest force and shrink after it, without friction by the same values."""
+    top = int(np.argmax(force))
+    both = min(top, len(force) - 1 - top)  # increments that have a partner on the other side
+    bench.below(f"{pair}: increments without a partner on the way back", abs(len(force) - 1 - 2 * top), 1)
+    for name, values in (("area", area), ("force", force)):
+        bench.below(f"{pair}: {name}, largest shrinking while loading", -np.diff(values[: top + 1]).min() / values.max(), 0.0)
+        bench.below(f"{pair}: {name}, largest growing while unloading", np.diff(values[top:]).max() / values.max(), 0.0)
+        difference = np.abs(values[top + 1 :][:both] - values[top - 1 :: -1][:both])
+        bench.below(f"{pair}: {name} on the way back / largest", difference.max() / values.max(), 1e-8)

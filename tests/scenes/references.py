@@ -208,3 +208,44 @@ def runge_kutta(rates, start, times, largest_step):
         now = time
         states.append(state)
     return np.array(states)
+
+
+def signorini_block(x, y, a, K, E, nu):
+    """Displacements u_x, u_y of a block on the rigid plane y = 0, frictionless, in plane strain, that touches it for x < a
+    with the pressure K sqrt(a - x).
+
+    Westergaard's stress function ([J] 2.2 for the frictionless half-plane) with w = a - x - i y:
+        Z = -K w^(1/2),  Zi = integral of Z dz = 2/3 K w^(3/2),  kappa = 3 - 4 nu,
+        2 G u_x = (kappa - 1)/2 Re Zi - y Im Z,  2 G u_y = (kappa + 1)/2 Im Zi - y Re Z,
+        sigma_yy = Re Z + y Im Z',  sigma_xy = -y Re Z'.
+    On y = 0, x < a: Zi is real, so u_y = 0, and sigma_yy = -K sqrt(a - x). For x > a: Z is imaginary, so sigma_yy = 0, and
+    u_y = (kappa + 1)/(6 G) K (x - a)^(3/2) > 0.
+    """
+    w = np.conj(a - np.asarray(x) + 1j * np.asarray(y))  # at y = 0 its imaginary part is -0: roots are limits from above
+    Z, Zi = -K * np.sqrt(w), 2.0 / 3.0 * K * np.sqrt(w) ** 3
+    kappa, double_G = 3.0 - 4.0 * nu, E / (1.0 + nu)
+    return ((kappa - 1.0) / 2.0 * Zi.real - y * Z.imag) / double_G, ((kappa + 1.0) / 2.0 * Zi.imag - y * Z.real) / double_G
+
+
+# Contact radius of the obstacle problem of PETSc's snes/tutorials/ex9.c (E. Bueler): obstacle sqrt(1 - r^2), zero at r = 2
+BALL_RADIUS = 0.697965148223374
+
+
+def membrane_over_ball(r, a):
+    """Height of a membrane over the ball of radius 1 at the origin that it touches for r < a. Outside it is harmonic,
+    -A ln(r) + B, and meets the ball with its value and slope: A = a^2/sqrt(1 - a^2)."""
+    r = np.asarray(r)
+    A = a**2 / np.sqrt(1.0 - a**2)
+    inside = np.sqrt(np.maximum(0.0, 1.0 - r**2))
+    return np.where(r < a, inside, np.sqrt(1.0 - a**2) - A * np.log(np.maximum(r, a) / a))
+
+
+def membrane_force(a):
+    """Force on the ball under a membrane of unit tension: 2 pi A by the slope outside."""
+    return 2.0 * np.pi * a**2 / np.sqrt(1.0 - a**2)
+
+
+def membrane_pressure(r, a):
+    """- Laplacian of sqrt(1 - r^2) inside contact, zero outside."""
+    r = np.asarray(r)
+    return np.where(r < a, (2.0 - r**2) / np.maximum(1.0 - r**2, 1e-12) ** 1.5, 0.0)

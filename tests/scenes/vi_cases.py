@@ -86,12 +86,35 @@ def against_semismooth(scene, changes=None, tolerance=0.01):
     return check
 
 
+def load_unload(scene, changes, pairs):
+    """Areas and forces grow and shrink through loading and unloading, and in every increment the force is that of
+    semismooth to 0.5 %, the peak pressure to 3 % on these coarse meshes."""
+    changes = {**changes, "steps": [{"name": "load", "to": 1.0, "increments": 3}, {"name": "unload", "to": 5.0 / 3.0, "increments": 2}]}
+
+    def check(bench):
+        found, other = (bench.run(scene, {**changes, "contact.*.enforce": {name: {}}}).history for name in ("vi", "semismooth"))
+        for pair in pairs:
+            force, expected = (np.hypot.reduce([history[f"contact_{pair}_force_{c}"] for c in "xyz" if f"contact_{pair}_force_{c}" in history])
+                               for history in (found, other))
+            common_checks.there_and_back(bench, pair, found[f"contact_{pair}_area"], force)
+            bench.below(f"{pair}: force against semismooth", np.abs(force / expected - 1.0).max(), 0.005)
+            peaks = found[f"contact_{pair}_max_pressure"] / other[f"contact_{pair}_max_pressure"]
+            bench.below(f"{pair}: peak pressure against semismooth", np.abs(peaks - 1.0).max(), 0.03)
+
+    return check
+
+
 def ranks(bench):
     common_checks.ranks_agree(bench, "wavy_block", PRESSED)
 
 
 CASES = {
     "wavy_block": {"free_boundary": free_boundary, "convergence": convergence, "triangles": triangles, "ranks": ranks},
+}
+UNLOAD = {
+    "hertz_2d": load_unload("hertz_2d", {"boundary.3.resultant.y": "-450*min(t,2-t)", "mesh.parameters.h": 0.1}, ["interface"]),
+    "hertz_3d": load_unload("hertz_3d", {"boundary.5.resultant.z": "-480*min(t,2-t)", "mesh.parameters.n": 4}, ["interface"]),
+    "disc_stack": load_unload("disc_stack", {"contact.4.master.plane.displacement.y": "-0.8*min(t,2-t)"}, ["lid", "rows_2_3", "columns_1_2"]),
 }
 VI = {
     "hertz_2d": against_semismooth("hertz_2d"),
