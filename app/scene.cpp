@@ -196,11 +196,11 @@ double Scene::bulk_energy(Vec unknowns) const {
   return energy;
 }
 
-std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) {
+std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path, const FreeMeshing& meshing) {
   auto scene = std::make_unique<Scene>();
   {
     const Phase phase("mesh");
-    auto input = read_input(comm, deck_path);
+    auto input = read_input(comm, deck_path, meshing);
     scene->deck = std::move(input.deck);
     scene->mesh = distribute_mesh(comm, input.raw, contact_hints(scene->deck), scene->deck.mesh.refine);
   }
