@@ -240,6 +240,29 @@ ObjectRule<StepDeck> step_rule() {
   return rule;
 }
 
+ObjectRule<AdaptDeck> adapt_rule() {
+  WordRule<AdaptQuantity> quantity;
+  quantity
+      .word("peak_pressure", AdaptQuantity::PeakPressure,
+            "Largest pressure of a contact pair; its error is judged by how it changes from pass to pass.")
+      .word("force", AdaptQuantity::Force, "Contact force of a pair; judged likewise.")
+      .word("energy", AdaptQuantity::Energy,
+            "Stored energy of all bodies; judged by the square of the error in the energy norm.")
+      .word("energy_norm", AdaptQuantity::EnergyNorm,
+            "Error of the stress everywhere, in the energy norm; judged by recovery.");
+  ObjectRule<AdaptDeck> rule;
+  rule.optional("target_error", &AdaptDeck::target_error, number("1", Range::above_up_to(0, 0.5)),
+                "Relative error of the quantity at which no finer mesh is made.")
+      .optional("quantity", &AdaptDeck::quantity, quantity, "What is to be accurate.")
+      .optional("pair", &AdaptDeck::pair, text("name of a contact pair"),
+                "The pair of peak_pressure and force; may be left out where the deck has one pair.")
+      .optional("max_unknowns", &AdaptDeck::max_unknowns, number("1", Range::above(0)),
+                "No mesh with more displacement and multiplier unknowns is solved on.")
+      .optional("max_passes", &AdaptDeck::max_passes, integer(Range::between(1, 30)),
+                "Meshes, the first one counted. 1: the first mesh as adaptive meshing would make it.");
+  return rule;
+}
+
 ObjectRule<CertificateDeck> certificate_rule() {
   const auto tolerance = [] { return number("1", Range::above_up_to(0, 1)); };
   ObjectRule<CertificateDeck> rule;
@@ -311,6 +334,11 @@ Rule<Deck> deck_rule() {
       .optional("estimate_path_error", &Deck::estimate_path_error, boolean(),
                 "true: every increment is solved in two halves, too, for the estimate of the path error alone; takes "
                 "about three times as long. Steps with a path_tolerance have the estimate anyway.")
+      .optional("adapt", &Deck::adapt, adapt_rule(),
+                "Mesh anew from the estimated error and run the whole history again, until a quantity of the end is "
+                "accurate enough. The .geo is meshed freely, in triangles or tetrahedra, also where it has transfinite "
+                "or recombined parts; mesh.parameters give the first mesh, which may be coarse.",
+                "O. C. Zienkiewicz, J. Z. Zhu, Int. J. Numer. Methods Engrg. 33 (1992) 1331-1382.")
       .optional("certificate", &Deck::certificate, certificate_rule(),
                 "Tolerances of the checks that every accepted increment must pass.")
       .optional("output", &Deck::output, output_rule(), "What is written, and where.")

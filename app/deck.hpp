@@ -118,6 +118,17 @@ struct StepDeck {
   IncrementsDeck increments = 1;
 };
 
+/// What adaptive meshing makes accurate: figures of the end of the run.
+enum class AdaptQuantity { PeakPressure, Force, Energy, EnergyNorm };
+
+struct AdaptDeck {
+  double target_error = 0.01; // relative
+  AdaptQuantity quantity = AdaptQuantity::PeakPressure;
+  std::optional<std::string> pair; // of peak_pressure and force; absent: the deck's only one
+  double max_unknowns = 200e3;     // displacement and multiplier unknowns of a pass
+  int max_passes = 10;
+};
+
 /// Tolerances of the certificate (DESIGN: may be changed, never switched off).
 struct CertificateDeck {
   double penetration = 0.05;     // largest penetration / local facet size
@@ -152,6 +163,7 @@ struct Deck {
   std::vector<ContactDeck> contact;
   std::vector<StepDeck> steps;
   bool estimate_path_error = false;
+  std::optional<AdaptDeck> adapt;
   CertificateDeck certificate;
   OutputDeck output;
   std::map<std::string, std::string> petsc; // option name without dash -> value

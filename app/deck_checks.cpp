@@ -317,6 +317,33 @@ void check_petsc(const Check& check) {
                                         "without its dash, for example `snes_rtol: 1e-9`.");
 }
 
+void check_adapt(const Check& check) {
+  const auto& [deck, root, reading] = check;
+  if (!deck.adapt || !check.sound("adapt")) return;
+  if (check.sound("mesh") && std::filesystem::path(deck.mesh.file.value).extension() == ".msh")
+    check.fail({"adapt"}, "adapt: a .msh file has no geometry to mesh anew. Name the .geo file that it was made from, "
+                          "or remove adapt.");
+  if (deck.mesh.refine > 0)
+    check.fail({"mesh", "refine"}, "mesh.refine: adapt chooses the sizes of cells itself. Remove one of the two.");
+  const auto quantity = deck.adapt->quantity;
+  const bool of_pair = quantity == AdaptQuantity::PeakPressure || quantity == AdaptQuantity::Force;
+  std::vector<std::string> names;
+  for (const auto& contact : deck.contact)
+    names.push_back(contact.name.value);
+  const auto& pair = deck.adapt->pair;
+  if (pair && !of_pair)
+    check.fail({"adapt", "pair"}, "adapt.pair: the quantity is one of the whole scene. Remove pair.");
+  else if (pair && std::find(names.begin(), names.end(), *pair) == names.end())
+    check.fail({"adapt", "pair"}, "adapt.pair: there is no contact pair '" + *pair + "'. " +
+                                      (names.empty() ? "The deck has none." : "Pairs: " + join_names(names) + "."));
+  else if (of_pair && !pair && names.size() != 1 && check.sound("contact"))
+    check.fail({"adapt"}, names.empty()
+                              ? "adapt.quantity: the deck has no contact pair. Use `quantity: energy` or "
+                                "`energy_norm`."
+                              : "adapt: the deck has " + std::to_string(names.size()) +
+                                    " contact pairs. Say which one counts with `pair`: " + join_names(names) + ".");
+}
+
 } // namespace
 
 std::string nearest_file(const std::string& path, const std::vector<std::string>& endings) {
@@ -346,6 +373,7 @@ void check_deck(const Deck& deck, const DeckNode& root, Reading& reading) {
   check_boundary(check);
   check_contact(check);
   check_steps(check);
+  check_adapt(check);
   check_output(check);
   check_petsc(check);
 }

@@ -2,6 +2,7 @@
 // whether effects that are off should have been on.
 #pragma once
 
+#include "accuracy/discretization_error.hpp"
 #include "certify.hpp"
 #include "path_record.hpp"
 #include "scene.hpp"
@@ -13,11 +14,15 @@
 
 namespace amontons {
 
+/// The error of the mesh in a state that has just been accepted or is about to be, with the samples of that state.
+/// Collective.
+DiscretizationError estimate_mesh_error(Scene& scene, Vec unknowns, std::span<const ContactSamples> samples);
+
 /// The last accepted state, and what the run has gathered on its way there.
 struct BudgetInput {
   Scene& scene;
   Vec unknowns;
-  std::span<const ContactSamples> samples;
+  const DiscretizationError& mesh_error;
   const CertificateRecord& certificate;
   const PathRecord* path;  // null: not measured
   double largest_residual; // of all accepted increments, relative to the force scale

@@ -1,5 +1,6 @@
 #include "run.hpp"
 
+#include "adaptation.hpp"
 #include "base/error.hpp"
 #include "base/interrupt.hpp"
 #include "base/log.hpp"
@@ -35,7 +36,9 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 /// One run: owns the solver and the writers, marches through the steps.
 class Run {
  public:
-  Run(MPI_Comm comm, const RunArguments& arguments);
+  /// `adaptation`: the passes that this run is one of; null without adaptive meshing.
+  Run(MPI_Comm comm, const RunArguments& arguments, Adaptation* adaptation);
+  std::int64_t num_unknowns() const;
   int march();
 
  private:
@@ -63,11 +66,13 @@ class Run {
   void write_checkpoint_file(const Stretch& stretch);
   void progress(const std::string& step, const IncrementReport& report, const std::vector<ContactTotals>& totals);
   void judge_accuracy(nlohmann::ordered_json& summary);
+  void close_pass(const DiscretizationError& mesh_error, nlohmann::ordered_json& summary);
   int finish(int status, const std::string& reason);
   std::string file(const char* name) const { return directory_ + "/" + name; }
 
   MPI_Comm comm_;
   RunArguments arguments_;
+  Adaptation* adaptation_;
   InterruptScope interrupt_;
   double started_ = now();
   Log log_;
@@ -91,8 +96,9 @@ class Run {
   std::optional<std::vector<ContactSamples>> last_samples_; // absent until an increment is accepted
 };
 
-Run::Run(MPI_Comm comm, const RunArguments& arguments) : comm_(comm), arguments_(arguments), log_(comm) {
-  scene_ = build_scene(comm, arguments.deck);
+Run::Run(MPI_Comm comm, const RunArguments& arguments, Adaptation* adaptation)
+    : comm_(comm), arguments_(arguments), adaptation_(adaptation), log_(comm) {
+  scene_ = build_scene(comm, arguments.deck, adaptation ? adaptation->meshing() : FreeMeshing{});
   for (const auto& [name, value] : scene_->deck.petsc)
     default_option("-" + name, value);
   directory_ = arguments.out.value_or(scene_->deck.output.directory);
@@ -100,7 +106,10 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments) : comm_(comm), arguments_
   solver_ = std::make_unique<IncrementSolver>(*scene_, [this] { return stop_requested_ = interrupted(comm_); });
   if (measures_path(scene_->deck)) path_.emplace();
   if (arguments_.restart) restart();
-  open_results();
+}
+
+std::int64_t Run::num_unknowns() const {
+  return scene_->mesh.num_global * scene_->mesh.dim + scene_->layout->num_extra();
 }
 
 void Run::restart() {
@@ -129,8 +138,10 @@ void Run::open_results() {
   };
   const bool goes_on = arguments_.restart && same_place();
   if (!goes_on) resume_time_.reset();
-  prepare_results_directory(comm_, directory_, goes_on);
-  log_.open(file("log.txt"), goes_on);
+  // A pass of adaptive meshing writes over the files of the one before; only the log goes on.
+  const bool later_pass = adaptation_ && adaptation_->pass() > 1;
+  prepare_results_directory(comm_, directory_, goes_on || later_pass);
+  log_.open(file("log.txt"), goes_on || later_pass);
   fields_ = std::make_unique<FieldsWriter>(scene_->mesh, directory_, scene_->deck.title, resume_time_);
   history_ =
       std::make_unique<HistoryWriter>(comm_, file("history.csv"), history_columns(*scene_, *ledger_), resume_time_);
@@ -325,6 +336,9 @@ void Run::accept(const Stretch& stretch, const SolveOutcome& outcome, double pat
   progress(stretch.name, report, last_totals_);
   const bool ends_step = report.time >= scene_->deck.steps[stretch.step].to;
   if (ends_step || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns, samples);
+  // The state at the very end is estimated in any run.
+  if (adaptation_ && ends_step && stretch.step + 1 < scene_->deck.steps.size())
+    adaptation_->see(*scene_, estimate_mesh_error(*scene_, unknowns, samples));
   write_checkpoint_file(stretch);
   largest_residual_ = std::max(largest_residual_, outcome.residual);
   last_samples_ = std::move(samples);
@@ -363,6 +377,7 @@ void Run::progress(const std::string& step, const IncrementReport& report, const
 }
 
 int Run::march() {
+  open_results();
   for (std::size_t step = first_step_; step < scene_->deck.steps.size(); ++step)
     if (const int status = march_step(step); status != status_certified) {
       const char* reason = status == status_interrupted ? "interrupted; checkpoint written" : "did not converge";
@@ -375,9 +390,10 @@ int Run::march() {
 /// Adds errors and effects to the summary, and what they amount to to the log.
 void Run::judge_accuracy(nlohmann::ordered_json& summary) {
   if (!last_samples_) return;
+  const auto mesh_error = estimate_mesh_error(*scene_, solver_->accepted(), *last_samples_);
   summary["errors"] = error_budget({.scene = *scene_,
                                     .unknowns = solver_->accepted(),
-                                    .samples = *last_samples_,
+                                    .mesh_error = mesh_error,
                                     .certificate = certificate_,
                                     .path = path_ ? &*path_ : nullptr,
                                     .largest_residual = largest_residual_,
@@ -386,6 +402,20 @@ void Run::judge_accuracy(nlohmann::ordered_json& summary) {
   log_.line("  " + budget_sentence(summary["errors"]));
   for (const auto& line : audit_warnings(summary["effects"]))
     log_.line("  warning: " + line);
+  if (adaptation_) close_pass(mesh_error, summary);
+}
+
+/// Hands what the pass has come to to the adaptation, which chooses the next mesh.
+void Run::close_pass(const DiscretizationError& mesh_error, nlohmann::ordered_json& summary) {
+  adaptation_->see(*scene_, mesh_error);
+  adaptation_->close(comm_, {.unknowns = num_unknowns(),
+                             .cells = summary["scene"]["cells"],
+                             .energy = ledger_->stored_energy(),
+                             .pairs = last_totals_,
+                             .mesh_error = mesh_error.relative(),
+                             .wall_seconds = now() - started_});
+  summary["adapt"] = adaptation_->to_json();
+  log_.line("  " + adaptation_->sentence());
 }
 
 int Run::finish(int status, const std::string& reason) {
@@ -427,6 +457,31 @@ int Run::finish(int status, const std::string& reason) {
 
 } // namespace
 
-int run(MPI_Comm comm, const RunArguments& arguments) { return Run(comm, arguments).march(); }
+namespace {
+
+/// Whole runs on one mesh after the other. A pass that failed its certificate goes on to the next all the same: meshes
+/// that are far too coarse often do.
+int run_passes(MPI_Comm comm, const RunArguments& arguments, const Deck& deck) {
+  if (arguments.restart)
+    throw UserError(
+        "--restart: a run with `adapt` cannot go on from a checkpoint, for its mesh is made anew. Run it from "
+        "the start, without --restart.");
+  Adaptation adaptation(deck);
+  for (;;) {
+    Run pass(comm, arguments, &adaptation);
+    if (!adaptation.fits(pass.num_unknowns())) continue;
+    const int status = pass.march();
+    const bool solved = status == status_certified || status == status_not_certified;
+    if (!solved || !adaptation.goes_on()) return status;
+  }
+}
+
+} // namespace
+
+int run(MPI_Comm comm, const RunArguments& arguments) {
+  const auto deck = read_deck(comm, arguments.deck);
+  if (deck.adapt) return run_passes(comm, arguments, deck);
+  return Run(comm, arguments, nullptr).march();
+}
 
 } // namespace amontons

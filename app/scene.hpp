@@ -9,7 +9,7 @@
 #include "form/loads.hpp"
 #include "form/problem.hpp"
 #include "form/solid.hpp"
-#include "mesh/mesh.hpp"
+#include "mesh/build.hpp"
 
 #include <memory>
 #include <string>
@@ -40,8 +40,8 @@ struct Scene {
 };
 
 /// Reads the deck and the mesh, checks both, distributes and sets up. Throws UserError with everything that is wrong,
-/// on every rank. Collective.
-std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path);
+/// on every rank. `meshing` counts where the deck has `adapt`. Collective.
+std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path, const FreeMeshing& meshing = {});
 
 /// The pairs as the deck declares them, with rigid masters where they are now: for reports and the certificate.
 std::vector<ContactPairNames> pair_names(const Scene& scene);

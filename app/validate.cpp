@@ -246,8 +246,11 @@ void check_finite(Fit& fit) {
 
 } // namespace
 
-MeshSource mesh_source(const Deck& deck) {
-  return {(std::filesystem::path(deck.folder) / deck.mesh.file.value).string(), deck.mesh.parameters, deck.mesh.order};
+MeshSource mesh_source(const Deck& deck, const FreeMeshing& meshing) {
+  MeshSource source{(std::filesystem::path(deck.folder) / deck.mesh.file.value).string(), deck.mesh.parameters,
+                    deck.mesh.order};
+  if (deck.adapt) source.free = meshing;
+  return source;
 }
 
 ContactHints contact_hints(const Deck& deck) {
@@ -275,11 +278,11 @@ void validate_against_mesh(const Deck& deck, const RawMesh& raw) {
   if (!fit.messages.empty()) throw UserError(std::move(fit.messages));
 }
 
-CheckedInput read_input(MPI_Comm comm, const std::string& deck_path) {
+CheckedInput read_input(MPI_Comm comm, const std::string& deck_path, const FreeMeshing& meshing) {
   CheckedInput input;
   input.deck = read_deck(comm, deck_path);
   on_root(comm, [&] {
-    input.raw = read_mesh(mesh_source(input.deck));
+    input.raw = read_mesh(mesh_source(input.deck, meshing));
     validate_against_mesh(input.deck, input.raw);
   });
   return input;

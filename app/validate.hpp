@@ -6,8 +6,9 @@
 
 namespace amontons {
 
-/// The mesh that the deck names, with the path of its file as seen from the working directory.
-MeshSource mesh_source(const Deck& deck);
+/// The mesh that the deck names, with the path of its file as seen from the working directory; `meshing` counts where
+/// the deck has `adapt`.
+MeshSource mesh_source(const Deck& deck, const FreeMeshing& meshing = {});
 
 /// The pairs of mesh surfaces that the deck declares to be in contact.
 ContactHints contact_hints(const Deck& deck);
@@ -24,6 +25,6 @@ struct CheckedInput {
 };
 
 /// Reads and checks deck and mesh; nothing is written. Throws UserError on every rank. Collective.
-CheckedInput read_input(MPI_Comm comm, const std::string& deck_path);
+CheckedInput read_input(MPI_Comm comm, const std::string& deck_path, const FreeMeshing& meshing = {});
 
 } // namespace amontons

@@ -7,6 +7,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace amontons {
 
@@ -164,26 +165,49 @@ std::vector<ContactEdgePoint> contact_edge(const Mesh& mesh, std::span<const dou
 
 double DiscretizationError::relative() const { return error > 0.0 ? error / std::hypot(error, solution) : 0.0; }
 
+double DiscretizationError::relative_near_edge() const {
+  return near_edge > 0.0 ? near_edge / std::hypot(near_edge, solution_near_edge) : 0.0;
+}
+
 double DiscretizationError::edge_share() const { return error > 0.0 ? std::pow(near_edge / error, 2) : 0.0; }
 
 DiscretizationError estimate_discretization_error(SolidForm& solid, const Mesh& mesh, const State& state,
                                                   std::span<const ContactEdgePoint> edge) {
   const PatchRecovery recovery(solid, mesh, state);
   EdgeRegion region(edge);
-  std::array<double, 3> sums{}; // squares of error, near_edge, solution
+  DiscretizationError result;
+  std::map<const CellBlock*, std::size_t> first;
+  std::size_t count = 0;
+  for (const auto& block : mesh.blocks) {
+    first[&block] = count;
+    count += static_cast<std::size_t>(block.size());
+  }
+  result.cells.resize(count);
+  result.cell_near_edge.resize(count);
+  std::array<double, 4> sums{}; // squares of error, near_edge, solution, solution_near_edge
   accuracy::each_weighed_batch(solid, state, [&](const PointBatch& batch) {
     const ErrorRule rule = error_rule(*batch.table);
     for (std::int32_t c = 0; c < batch.num_cells; ++c) {
       const auto [error, solution] = squares(recovery, rule, mesh, batch, c);
+      const bool near = region.meets(mesh, state.displacement, batch.block->cell(batch.first_cell + c));
+      const std::size_t cell = first.at(batch.block) + static_cast<std::size_t>(batch.first_cell + c);
+      result.cells[cell] = error;
+      result.cell_near_edge[cell] = near;
       sums[0] += error;
-      if (region.meets(mesh, state.displacement, batch.block->cell(batch.first_cell + c))) sums[1] += error;
       sums[2] += solution;
+      if (!near) continue;
+      sums[1] += error;
+      sums[3] += solution;
     }
   });
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, mesh.comm);
   for (double& sum : sums)
     sum = std::sqrt(std::max(0.0, sum));
-  return {.error = sums[0], .near_edge = sums[1], .solution = sums[2]};
+  result.error = sums[0];
+  result.near_edge = sums[1];
+  result.solution = sums[2];
+  result.solution_near_edge = sums[3];
+  return result;
 }
 
 } // namespace amontons

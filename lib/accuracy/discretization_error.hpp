@@ -26,14 +26,21 @@ std::vector<ContactEdgePoint> contact_edge(const Mesh& mesh, std::span<const dou
 
 /// Energy norms are sqrt(∫ Δσ : Δε), in the root of a work.
 struct DiscretizationError {
-  double error = 0.0;     // of the stress: recovered against computed
-  double near_edge = 0.0; // the part of `error` in cells within a facet of the edge of contact; squares add up
-  double solution = 0.0;  // sqrt(∫ σ : ε) of the computed field
+  double error = 0.0;              // of the stress: recovered against computed
+  double near_edge = 0.0;          // the part of `error` in cells within a facet of the edge of contact; squares add up
+  double solution = 0.0;           // sqrt(∫ σ : ε) of the computed field
+  double solution_near_edge = 0.0; // the part of `solution` in the cells of `near_edge`
+  /// Square of the error in each cell of this rank, block by block as in Mesh::blocks, and whether the cell is near the
+  /// edge of contact.
+  std::vector<double> cells;
+  std::vector<std::uint8_t> cell_near_edge;
 
   /// Error over the norm of the exact solution, of which solution² + error² is the estimate: 0 to 1.
   double relative() const;
   /// Part of the squared error that comes from near the edge of contact: 0 to 1.
   double edge_share() const;
+  /// The same as relative() for the cells near the edge of contact alone.
+  double relative_near_edge() const;
 };
 
 /// Zienkiewicz and Zhu's estimate by superconvergent patch recovery (IJNME 33, 1992): around every corner node a

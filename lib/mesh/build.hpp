@@ -3,19 +3,28 @@
 #pragma once
 
 #include "mesh/mesh.hpp"
+#include "mesh/size_field.hpp"
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace amontons {
 
+/// A .geo meshed anew: triangles or tetrahedra everywhere, whatever transfinite, extruded or recombined parts the
+/// script asks for, so that cells can have any size.
+struct FreeMeshing {
+  std::shared_ptr<const SizeField> sizes; // absent: the sizes that the script asks for
+};
+
 struct MeshSource {
   std::string file;                         // .geo (meshed by gmsh) or .msh (2.2 and 4.1, text or binary)
   std::map<std::string, double> parameters; // values for the .geo's DefineConstant names
   std::optional<int> order;                 // 1 or 2; absent: 1 for .geo, the file's own for .msh
+  std::optional<FreeMeshing> free = {};     // absent: as the script says
 };
 
 /// A physical group of the file.

@@ -45,18 +45,35 @@ DeclaredGroups physical_names(const std::string& msh_file) {
   return groups;
 }
 
+/// A file for gmsh to write or read, in the folder for temporary files; gone with the object.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& ending) {
+    name_ = (fs::temp_directory_path() / ("amontons_XXXXXX" + ending)).string();
+    const int descriptor = mkstemps(name_.data(), static_cast<int>(ending.size()));
+    if (descriptor < 0)
+      throw UserError("No temporary file can be made in " + in_quotes(fs::temp_directory_path().string()) +
+                      "; make room there or set TMPDIR to a folder that can be written to.");
+    close(descriptor);
+  }
+  ~TemporaryFile() {
+    std::error_code ignored;
+    fs::remove(name_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+};
+
 /// gmsh's API does not tell of physical groups without entities, but the files that it writes do.
 DeclaredGroups names_known_to_gmsh(GmshSession& session) {
-  std::string name = (fs::temp_directory_path() / "amontons_names_XXXXXX.msh").string();
-  const int descriptor = mkstemps(name.data(), 4);
-  if (descriptor < 0)
-    throw UserError("No temporary file can be made in " + in_quotes(fs::temp_directory_path().string()) +
-                    "; make room there or set TMPDIR to a folder that can be written to.");
-  close(descriptor);
-  session.run("The physical names of the mesh cannot be written to " + in_quotes(name), [&] { gmsh::write(name); });
-  auto groups = physical_names(name);
-  fs::remove(name);
-  return groups;
+  const TemporaryFile file(".msh");
+  session.run("The physical names of the mesh cannot be written to " + in_quotes(file.name()),
+              [&] { gmsh::write(file.name()); });
+  return physical_names(file.name());
 }
 
 void check_parameters(const MeshSource& source) {
@@ -125,6 +142,78 @@ void generate_mesh(GmshSession& session, const MeshSource& source) {
   if (types.empty()) session.run(failure, [&] { gmsh::model::mesh::generate(dim); });
 }
 
+/// The model as a plain list of points, curves, surfaces ... without the lines that make parts of it structured.
+struct PlainScript {
+  std::string text;
+  bool was_structured = false;
+};
+
+PlainScript plain_script(GmshSession& session, const MeshSource& source) {
+  const TemporaryFile file(".geo_unrolled");
+  session.run("Mesh file " + in_quotes(source.file) + " cannot be written out", [&] { gmsh::write(file.name()); });
+  PlainScript script;
+  std::ifstream stream(file.name());
+  for (std::string line; std::getline(stream, line);) {
+    const bool structured = line.starts_with("Transfinite") || line.starts_with("Recombine");
+    script.was_structured = script.was_structured || structured;
+    if (!structured) script.text += line + "\n";
+  }
+  return script;
+}
+
+/// The sizes of the cells that the script has made.
+std::vector<SizeSample> sizes_of_cells(int dim) {
+  std::vector<SizeSample> samples;
+  std::vector<int> types;
+  gmsh::model::mesh::getElementTypes(types, dim);
+  for (const int type : types) {
+    std::vector<double> local, weights, jacobians, determinants, places;
+    gmsh::model::mesh::getIntegrationPoints(type, "Gauss1", local, weights);
+    gmsh::model::mesh::getJacobians(type, local, jacobians, determinants, places);
+    for (std::size_t q = 0; q < determinants.size(); ++q) {
+      const double edge = equilateral_edge(dim, std::abs(determinants[q]) * weights[q % weights.size()]);
+      samples.push_back(
+          {.place = {places[3 * q], places[3 * q + 1], places[3 * q + 2]}, .radius = 0.5 * edge, .size = edge});
+    }
+  }
+  return samples;
+}
+
+/// From now on gmsh makes cells of these sizes, whatever the script says.
+void impose_sizes(const std::shared_ptr<const SizeField>& sizes) {
+  for (const char* option :
+       {"Mesh.MeshSizeExtendFromBoundary", "Mesh.MeshSizeFromPoints", "Mesh.MeshSizeFromCurvature", "Mesh.MeshSizeMin"})
+    gmsh::option::setNumber(option, 0);
+  gmsh::option::setNumber("Mesh.MeshSizeMax", 1e22);
+  gmsh::option::setNumber("Mesh.MeshSizeFactor", 1);
+  // The least of callback and background field counts, so the script's field gives way to one that asks for nothing.
+  const int nothing = gmsh::model::mesh::field::add("MathEval");
+  gmsh::model::mesh::field::setString(nothing, "F", "1e22");
+  gmsh::model::mesh::field::setAsBackgroundMesh(nothing);
+  gmsh::model::mesh::setSizeCallback([sizes](int, int, double x, double y, double z) { return (*sizes)({x, y, z}); });
+}
+
+void free_from_script(GmshSession& session, const MeshSource& source) {
+  const std::string failure = "Mesh file " + in_quotes(source.file) + " cannot be meshed freely";
+  gmsh::model::mesh::removeConstraints(); // gmsh's own kernel brings its own constraints back: hence the rest
+  const auto script = plain_script(session, source);
+  auto sizes = source.free->sizes;
+  if (script.was_structured) {
+    if (!sizes) {
+      generate_mesh(session, source);
+      sizes = std::make_shared<const SizeField>(sizes_of_cells(gmsh::model::getDimension()), usual_growth);
+    }
+    const TemporaryFile file(".geo");
+    std::ofstream(file.name()) << script.text;
+    session.run(failure, [&] { gmsh::open(file.name()); });
+  }
+  gmsh::model::mesh::clear();
+  for (const char* option : {"Mesh.RecombineAll", "Mesh.Recombine3DAll", "Mesh.SubdivisionAlgorithm"})
+    gmsh::option::setNumber(option, 0);
+  gmsh::option::setNumber("Mesh.ElementOrder", 1);
+  if (sizes) impose_sizes(sizes);
+}
+
 void bring_to_order(GmshSession& session, const MeshSource& source, std::optional<int> order) {
   const auto orders = element_orders();
   if (!order || orders.empty() || orders == std::set<int>{*order}) return;
@@ -174,6 +263,12 @@ DeclaredGroups load_model(GmshSession& session, const MeshSource& source) {
   const bool script = source.file.ends_with(".geo");
   session.run("Mesh file " + in_quotes(source.file) + " cannot be read", [&] { gmsh::open(source.file); });
   const auto groups = script ? names_known_to_gmsh(session) : physical_names(source.file);
+  if (source.free) {
+    if (!script)
+      throw UserError("Mesh file " + in_quotes(source.file) +
+                      " cannot be meshed anew: a .msh file has no geometry. Give the .geo file that it was made from.");
+    free_from_script(session, source);
+  }
   if (script) generate_mesh(session, source);
   const auto orders = element_orders();
   if (script || (!orders.empty() && *orders.rbegin() <= 2))
