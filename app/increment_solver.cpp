@@ -1,5 +1,7 @@
 #include "increment_solver.hpp"
 
+#include "solve/kept_factorization.hpp"
+
 #include <algorithm>
 
 namespace amontons {
@@ -35,11 +37,12 @@ IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted
     bounded_ = std::make_unique<BoundedNewton>(*scene.problem, *scene.bounds, std::move(interrupted));
     return;
   }
-  linear_solver_ = choose_linear_solver(*scene.problem);
   if (scene.conditions) {
+    linear_solver_ = choose_linear_solver(*scene.problem);
     condensed_ = std::make_unique<CondensedNewton>(*scene.problem, *scene.conditions, std::move(interrupted));
     return;
   }
+  linear_solver_ = choose_newton_solver(*scene.problem);
   newton_ = std::make_unique<Newton>(*scene.problem, std::move(interrupted));
   uzawa_ = make_uzawa(scene, *newton_);
 }

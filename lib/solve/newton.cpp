@@ -1,6 +1,7 @@
 #include "solve/newton.hpp"
 
 #include "base/timer.hpp"
+#include "solve/kept_factorization.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -141,6 +142,8 @@ SolveOutcome outcome_of(SNES snes, const Problem& problem) {
   return outcome;
 }
 
+Newton::~Newton() = default;
+
 Newton::Newton(Problem& problem, std::function<bool()> interrupted)
     : problem_(problem), interrupted_(std::move(interrupted)), matrix_(problem.new_matrix()),
       residual_(problem.layout().new_vector()) {
@@ -153,6 +156,7 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
   sufficient_decrease_ = decrease_asked_for(snes_);
+  if (KeptFactorization::is_asked_for(snes_)) kept_factorization_ = std::make_unique<KeptFactorization>(problem, snes_);
   if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
 }
 
@@ -167,7 +171,9 @@ PetscErrorCode Newton::evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, voi
   return guarded(newton.kept_, [&] {
     const bool is_guess = newton.problem_.is_first_guess();
     ask_for_decrease(newton.snes_, is_guess ? accept_anything : newton.sufficient_decrease_);
-    if (newton.problem_.tangent(unknowns, matrix)) ++newton.factorizations_;
+    if (!newton.problem_.tangent(unknowns, matrix)) return;
+    ++newton.factorizations_;
+    if (newton.kept_factorization_) newton.kept_factorization_->tangent_changed();
   });
 }
 
@@ -186,12 +192,18 @@ PetscErrorCode Newton::test_convergence(SNES snes, PetscInt iteration, PetscReal
 SolveOutcome Newton::solve(Vec unknowns) {
   factorizations_ = 0;
   kept_ = nullptr;
+  if (kept_factorization_) kept_factorization_->begin();
   const Phase phase("linear solver"); // the phases of forms inside stop this clock
   const PetscErrorCode code = SNESSolve(snes_, nullptr, unknowns);
   if (kept_) std::rethrow_exception(kept_);
+  if (kept_factorization_) kept_factorization_->rethrow();
   AMT_PETSC(code);
   SolveOutcome outcome = outcome_of(snes_, problem_);
   outcome.factorizations = factorizations_;
+  if (kept_factorization_) {
+    outcome.factorizations = kept_factorization_->factorizations();
+    outcome.linear = kept_factorization_->iterations();
+  }
   return outcome;
 }
 

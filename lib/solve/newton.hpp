@@ -6,9 +6,12 @@
 #include "form/problem.hpp"
 
 #include <functional>
+#include <memory>
 #include <string>
 
 namespace amontons {
+
+class KeptFactorization;
 
 /// How a solve went. Not converging is an outcome, not an exception.
 struct SolveOutcome {
@@ -55,6 +58,7 @@ class Newton {
   /// Call choose_linear_solver first. `interrupted` is asked at every iteration and must be the same on every rank.
   /// Collective.
   Newton(Problem& problem, std::function<bool()> interrupted);
+  ~Newton();
 
   /// Iterate at least this often unless the residual is rounding: for a loop around that wants more accuracy than the
   /// tolerance and pays only a back-substitution for it.
@@ -72,6 +76,8 @@ class Newton {
   Problem& problem_;
   std::function<bool()> interrupted_;
   SnesHandle snes_;
+  std::unique_ptr<KeptFactorization>
+      kept_factorization_; // absent unless the problem is large or the options ask for it
   MatHandle matrix_;
   VecHandle residual_;
   std::exception_ptr kept_;

@@ -1,0 +1,179 @@
+// Newton's method with a kept factorization finds what it finds with a factorization for every tangent.
+#include "solve/kept_factorization.hpp"
+
+#include "form/bulk.hpp"
+#include "material/elastic.hpp"
+#include "solve/newton.hpp"
+#include "two_blocks.hpp"
+
+#include <algorithm>
+#include <doctest/doctest.h>
+
+using namespace amontons;
+using namespace amontons::test;
+
+namespace {
+
+/// Springs under the nodes of a group that only push back, F_z = −k max(0, depth), so that the tangent changes with the
+/// set of those that push; and a swirl F_x = s u_y, F_y = −s u_x that makes it unsymmetric.
+class Springs : public Form {
+ public:
+  Springs(const DofLayout& layout, std::string group, double stiffness, double swirl)
+      : layout_(layout), group_(std::move(group)), stiffness_(stiffness), swirl_(swirl) {}
+  const char* name() const override { return "springs"; }
+  bool tangent_is_symmetric() const override { return swirl_ == 0.0; }
+  void couple(Coupling& coupling) const override {
+    for (const auto node : nodes())
+      coupling.add(equations(node));
+  }
+  void add_residual(const State& state, Residual& residual) override {
+    for (const auto node : nodes()) {
+      const double push = stiffness_ * std::max(0.0, depth(state, node));
+      residual.nodal()[std::size_t(node) * 3 + 2] -= push;
+      residual.nodal()[std::size_t(node) * 3] += swirl_ * state.displacement[std::size_t(node) * 3 + 1];
+      residual.nodal()[std::size_t(node) * 3 + 1] -= swirl_ * state.displacement[std::size_t(node) * 3];
+    }
+  }
+  void add_tangent(const State& state, Tangent& tangent) override {
+    for (const auto node : nodes()) {
+      const double k = depth(state, node) > 0.0 ? stiffness_ : 0.0;
+      const double block[] = {0.0, swirl_, 0.0, -swirl_, 0.0, 0.0, 0.0, 0.0, k};
+      tangent.add(equations(node), block);
+    }
+  }
+
+ private:
+  std::vector<std::int32_t> nodes() const {
+    std::vector<std::int32_t> owned;
+    for (const auto node : layout_.mesh().node_groups.at(group_))
+      if (node < layout_.mesh().num_owned) owned.push_back(node);
+    return owned;
+  }
+  /// The springs' feet stand at different heights, so that they close one after the other.
+  double depth(const State& state, std::int32_t node) const {
+    const auto place = layout_.mesh().position(node);
+    return -0.004 * (place[0] + 0.5 * place[1]) - state.displacement[std::size_t(node) * 3 + 2];
+  }
+  std::array<PetscInt, 3> equations(std::int32_t node) const {
+    return {layout_.equation(node, 0), layout_.equation(node, 1), layout_.equation(node, 2)};
+  }
+  const DofLayout& layout_;
+  std::string group_;
+  double stiffness_, swirl_;
+};
+
+struct Found {
+  VecHandle displacement; // at the end
+  int newton = 0, factorizations = 0;
+};
+
+/// The upper block pressed onto the springs in five increments.
+Found press(const DofLayout& layout, double stiffness, double swirl, const char* preconditioner) {
+  std::vector<std::unique_ptr<Form>> forms;
+  const auto law = make_law(Elastic{100.0, 0.3}, Space::Solid);
+  forms.push_back(std::make_unique<BulkForm>(layout, Space::Solid, std::vector<BulkLawPtr>{law, law}));
+  forms.push_back(std::make_unique<Springs>(layout, "upper_bottom", stiffness, swirl));
+  std::vector<PrescribedDisplacement> prescribed;
+  for (int c = 0; c < 3; ++c)
+    prescribed.push_back({"bottom", c, Expression(0.0)});
+  for (int c = 0; c < 2; ++c)
+    prescribed.push_back({"top", c, Expression(0.0)});
+  prescribed.push_back({"top", 2, Expression("-0.01*t", {})});
+  Problem problem(layout, std::move(forms), prescribed);
+  const auto clear = [] {
+    for (const char* option : {"-pc_type", "-ksp_type", "-snes_linesearch_type"})
+      PetscOptionsClearValue(nullptr, option);
+  };
+  clear();
+  PetscOptionsSetValue(nullptr, "-pc_type", preconditioner);
+  PetscOptionsSetValue(nullptr, "-snes_linesearch_type", "basic");
+  choose_newton_solver(problem);
+  Newton newton(problem, nullptr);
+  Found found{.displacement = layout.new_vector()};
+  for (int increment = 1; increment <= 5; ++increment) {
+    problem.begin_increment(0.2 * increment, found.displacement);
+    const auto outcome = newton.solve(found.displacement);
+    CAPTURE(increment);
+    CAPTURE(outcome.reason);
+    REQUIRE(outcome.converged);
+    found.newton += outcome.newton;
+    found.factorizations += outcome.factorizations;
+    problem.commit(found.displacement);
+  }
+  clear();
+  return found;
+}
+
+} // namespace
+
+TEST_CASE("a kept factorization leads to the same displacements with fewer factorizations") {
+  const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, 3, 4, 5, 0.0);
+  const DofLayout layout(mesh, {}, {});
+  for (const double stiffness : {10.0, 1e4})
+    for (const double swirl : {0.0, 3.0, 1e4}) { // the last is far from symmetric
+      CAPTURE(stiffness);
+      CAPTURE(swirl);
+      const auto reference = press(layout, stiffness, swirl, "lu");
+      const auto kept = press(layout, stiffness, swirl, "shell");
+      double size = 0.0, difference = 0.0;
+      VecNorm(reference.displacement, NORM_INFINITY, &size);
+      VecAXPY(kept.displacement, -1.0, reference.displacement);
+      VecNorm(kept.displacement, NORM_INFINITY, &difference);
+      CHECK(size > 1e-3);
+      CHECK(difference < 1e-9 * size);
+      CHECK(reference.factorizations > 5); // the tangent really changes
+      if (swirl == 0.0) CHECK(kept.factorizations < reference.factorizations);
+    }
+}
+
+TEST_CASE("a singular tangent is an outcome, and the next solve starts anew") {
+  class Constant : public Form {
+   public:
+    explicit Constant(const DofLayout& layout) : layout_(layout) {}
+    double slope = 0.0;
+    const char* name() const override { return "constant"; }
+    void couple(Coupling& coupling) const override {
+      for (std::int32_t node = 0; node < layout_.mesh().num_owned; ++node)
+        coupling.add(equations(node));
+    }
+    void add_residual(const State& state, Residual& residual) override {
+      for (std::int32_t i = 0; i < layout_.mesh().num_owned * 2; ++i)
+        residual.nodal()[i] += 1.0 + slope * state.displacement[i];
+    }
+    void add_tangent(const State&, Tangent& tangent) override {
+      for (std::int32_t node = 0; node < layout_.mesh().num_owned; ++node)
+        tangent.add(equations(node), std::array{slope, 0.0, 0.0, slope});
+    }
+
+   private:
+    std::array<PetscInt, 2> equations(std::int32_t node) const {
+      return {layout_.equation(node, 0), layout_.equation(node, 1)};
+    }
+    const DofLayout& layout_;
+  };
+  const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, 2, 2, 2, 0.0);
+  const DofLayout layout(mesh, {}, {});
+  std::vector<std::unique_ptr<Form>> forms;
+  forms.push_back(std::make_unique<Constant>(layout));
+  auto& form = static_cast<Constant&>(*forms.front());
+  Problem problem(layout, std::move(forms), {});
+  PetscOptionsSetValue(nullptr, "-pc_type", "shell");
+  choose_newton_solver(problem);
+  Newton newton(problem, nullptr);
+  const auto u = layout.new_vector();
+  problem.begin_increment(1.0, u);
+  const auto singular = newton.solve(u);
+  CAPTURE(singular.reason);
+  CHECK_FALSE(singular.converged);
+  CHECK(singular.reason.find("linear solver") != std::string::npos);
+  form.slope = 2.0;
+  problem.begin_increment(1.0, u);
+  const auto regular = newton.solve(u);
+  CAPTURE(regular.reason);
+  CHECK(regular.converged);
+  double largest = 0.0;
+  VecMax(u, nullptr, &largest);
+  CHECK(largest == doctest::Approx(-0.5));
+  for (const char* option : {"-pc_type", "-ksp_type", "-snes_linesearch_type"})
+    PetscOptionsClearValue(nullptr, option);
+}
