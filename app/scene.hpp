@@ -29,6 +29,8 @@ struct Scene {
   std::unique_ptr<MortarTransform> bounds;       // absent without `vi` pairs
   std::vector<std::string> floating;             // bodies held by contact alone
 
+  /// Young's modulus by body.
+  std::vector<double> stiffness() const;
   /// Strain energy of all bodies. Collective.
   double bulk_energy(Vec unknowns) const;
 };
