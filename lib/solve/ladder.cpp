@@ -70,7 +70,8 @@ Ladder::Ladder(Problem& problem, Newton& newton, Hooks hooks)
       uses_(remedies().size()) {}
 
 bool Ladder::applies(const Remedy& remedy, const Trouble& trouble) const {
-  if (std::holds_alternative<HeldPoints>(remedy)) return newton_.watch().name(on_and_off_, 0).count > 0;
+  if (std::holds_alternative<HeldPoints>(remedy))
+    return newton_.watch().has_points() && newton_.watch().name(on_and_off_, 0).count > 0;
   if (std::holds_alternative<LaggedLimits>(remedy))
     return std::any_of(forms_.begin(), forms_.end(), [](const auto* form) { return form->has_limits(); });
   if (std::holds_alternative<SofterAugmentation>(remedy)) return newton_.watch().has_points();
@@ -78,16 +79,29 @@ bool Ladder::applies(const Remedy& remedy, const Trouble& trouble) const {
   return true;
 }
 
-SolveOutcome Ladder::climb(Vec unknowns, const SolveOutcome& failed, const Trouble& trouble) {
-  SolveOutcome outcome = failed;
+void Ladder::note_flipping() {
   if (newton_.watch().has_points())
     on_and_off_ = newton_.watch().flipping(StatusWatch::most_looks, StatusWatch::Flip::OffOn);
+}
+
+SolveOutcome Ladder::start_over(const Remedy& remedy, Vec unknowns) {
+  hooks_.restart();
+  return std::visit([&](const auto& alternative) { return use(alternative, unknowns); }, remedy);
+}
+
+SolveOutcome Ladder::attempt(const Remedy& remedy, Vec unknowns) {
+  note_flipping();
+  return start_over(remedy, unknowns);
+}
+
+SolveOutcome Ladder::climb(Vec unknowns, const SolveOutcome& failed, const Trouble& trouble) {
+  SolveOutcome outcome = failed;
+  note_flipping();
   for (std::size_t rung = 0; rung < remedies().size(); ++rung) {
     const auto& remedy = remedies()[rung];
     if (spent_.count(rung) > 0 || !applies(remedy, trouble)) continue;
     ++uses_[rung].tried;
-    hooks_.restart();
-    const auto tried = std::visit([&](const auto& alternative) { return use(alternative, unknowns); }, remedy);
+    const auto tried = start_over(remedy, unknowns);
     outcome.add_effort(tried);
     outcome.interrupted = tried.interrupted;
     if (tried.interrupted) return outcome;

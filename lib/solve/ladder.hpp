@@ -57,6 +57,8 @@ class Ladder {
   /// A rung that fails is not tried again until release_rungs(). The outcome has the effort of all, and of a failure
   /// the reason of the first solve. Collective.
   SolveOutcome climb(Vec unknowns, const SolveOutcome& failed, const Trouble& trouble);
+  /// One rung by itself, from the start of the increment, after a solve that failed. Collective.
+  SolveOutcome attempt(const Remedy& remedy, Vec unknowns);
   /// After an accepted increment: every rung may be tried again.
   void release_rungs() { spent_.clear(); }
 
@@ -69,6 +71,8 @@ class Ladder {
  private:
   using Marks = std::vector<std::vector<std::uint8_t>>; // [form][point of this rank]
 
+  void note_flipping();
+  SolveOutcome start_over(const Remedy& remedy, Vec unknowns);
   bool applies(const Remedy& remedy, const Trouble& trouble) const;
   SolveOutcome use(MeritSearch, Vec unknowns);
   SolveOutcome use(HeldPoints, Vec unknowns);

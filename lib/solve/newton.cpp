@@ -271,7 +271,9 @@ Trouble Newton::trouble() const {
   trouble.residual = outcome.residual;
   trouble.largest_change = record_.largest_change();
   if (watch_.has_points()) {
-    const std::size_t looks = trouble.cycle > 0 ? static_cast<std::size_t>(trouble.cycle) + 1 : StatusWatch::most_looks;
+    const std::size_t looks = trouble.rests       ? 1
+                              : trouble.cycle > 0 ? static_cast<std::size_t>(trouble.cycle) + 1
+                                                  : StatusWatch::most_looks;
     const auto named = watch_.name(watch_.flipping(looks, StatusWatch::Flip::Branch), most_named);
     trouble.num_flipping = named.count;
     trouble.points = named.first;

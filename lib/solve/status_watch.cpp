@@ -11,6 +11,14 @@ namespace {
 /// FNV-1a by G. Fowler, L. C. Noll and K.-P. Vo.
 constexpr std::uint64_t fnv_offset = 0xcbf29ce484222325ULL, fnv_prime = 0x100000001b3ULL;
 
+/// The finalizer of splitmix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014): sums of FNV hashes as they are may
+/// cancel between ranks, for one flipped bit changes them by plus or minus the same number.
+std::uint64_t mixed(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
 } // namespace
 
 StatusWatch::StatusWatch(const Problem& problem) : problem_(problem), forms_(problem.switching()) {
@@ -26,12 +34,13 @@ StatusWatch::Look StatusWatch::look() {
     now.push_back(form->branches());
   int rank = 0;
   MPI_Comm_rank(problem_.comm(), &rank);
-  std::uint64_t sums[2] = {fnv_offset + static_cast<std::uint64_t>(rank), 0}; // so that ranks do not cancel
+  std::uint64_t sums[2] = {fnv_offset + static_cast<std::uint64_t>(rank), 0};
   for (std::size_t form = 0; form < now.size(); ++form)
     for (std::size_t i = 0; i < now[form].size(); ++i) {
       sums[0] = (sums[0] ^ now[form][i]) * fnv_prime;
       if (!seen_.empty() && seen_.back()[form][i] != now[form][i]) ++sums[1];
     }
+  sums[0] = mixed(sums[0]);
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_UINT64_T, MPI_SUM, problem_.comm());
   seen_.push_back(std::move(now));
   if (seen_.size() > most_looks) seen_.pop_front();
