@@ -1,5 +1,6 @@
 #include "increment_solver.hpp"
 
+#include "form/viscous.hpp"
 #include "solve/kept_factorization.hpp"
 
 #include <algorithm>
@@ -30,8 +31,10 @@ VecHandle copy_of(Vec vec) {
 
 } // namespace
 
-IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted)
-    : scene_(scene), unknowns_(scene.layout->new_vector()), accepted_(scene.layout->new_vector()) {
+IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted,
+                                 std::function<void(const std::string&)> tell)
+    : scene_(scene), tell_(std::move(tell)), unknowns_(scene.layout->new_vector()),
+      accepted_(scene.layout->new_vector()) {
   if (scene.bounds) {
     linear_solver_ = choose_bounded_solver(*scene.problem);
     bounded_ = std::make_unique<BoundedNewton>(*scene.problem, *scene.bounds, std::move(interrupted));
@@ -47,15 +50,52 @@ IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted
   uzawa_ = make_uzawa(scene, *newton_);
 }
 
-SolveOutcome IncrementSolver::solve(double target) {
+void IncrementSolver::start(double target) {
+  target_ = target;
   AMT_PETSC(VecCopy(accepted_, unknowns_));
   scene_.problem->begin_increment(target, unknowns_);
+}
+
+SolveOutcome IncrementSolver::solve_plainly() {
   if (bounded_) return bounded_->solve(unknowns_);
   if (condensed_) return condensed_->solve(unknowns_);
   return uzawa_ ? uzawa_->solve(unknowns_) : newton_->solve(unknowns_);
 }
 
+SolveOutcome IncrementSolver::solve(double target) {
+  start(target);
+  auto outcome = solve_plainly();
+  if (outcome.converged || outcome.interrupted || bounded_) return outcome;
+  trouble_ = newton_->trouble();
+  trouble_->solver = outcome.reason;
+  outcome.reason = in_words(*trouble_);
+  if (!ladder_) ladder_ = make_ladder();
+  return ladder_->climb(unknowns_, outcome, *trouble_);
+}
+
+std::unique_ptr<Ladder> IncrementSolver::make_ladder() {
+  const auto restart = [this] {
+    roll_back();
+    start(target_);
+  };
+  const auto make_support = [this](double ratio) -> std::unique_ptr<Form> {
+    auto& problem = *scene_.problem;
+    auto support = std::make_unique<ViscousForm>(*scene_.layout, scene_.deck.space, scene_.stiffness(), ratio,
+                                                 target_ - problem.accepted_time());
+    auto state = problem.state_at(accepted_);
+    state.time = problem.accepted_time();
+    support->commit(state);
+    return support;
+  };
+  return std::make_unique<Ladder>(*scene_.problem, *newton_,
+                                  Ladder::Hooks{.restart = restart,
+                                                .solve = [this] { return solve_plainly(); },
+                                                .make_support = make_support,
+                                                .tell = tell_});
+}
+
 void IncrementSolver::commit() {
+  if (ladder_) ladder_->release_rungs();
   scene_.problem->commit(unknowns_);
   resume();
 }
@@ -94,10 +134,7 @@ std::vector<SolvedState> IncrementSolver::solve_halves(double target, SolveOutco
   outcome = {};
   for (const double end : {0.5 * (start.time + target), target}) {
     const auto half = solve(end);
-    outcome.newton += half.newton;
-    outcome.linear += half.linear;
-    outcome.outer += half.outer;
-    outcome.factorizations += half.factorizations;
+    outcome.add_effort(half);
     outcome.reason = half.reason;
     outcome.converged = half.converged;
     if (!half.converged) break;

@@ -5,10 +5,12 @@
 #include "scene.hpp"
 #include "solve/bounded_newton.hpp"
 #include "solve/condensed_newton.hpp"
+#include "solve/ladder.hpp"
 #include "solve/uzawa.hpp"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,16 +28,22 @@ struct SolvedState {
 
 class IncrementSolver {
  public:
-  /// `interrupted`: see Newton. Collective.
-  IncrementSolver(Scene& scene, std::function<bool()> interrupted);
+  /// `interrupted`: see Newton; `tell`: see Ladder::Hooks. Collective.
+  IncrementSolver(Scene& scene, std::function<bool()> interrupted, std::function<void(const std::string&)> tell);
 
   /// Which linear solver was chosen, in words.
   const std::string& linear_solver() const { return linear_solver_; }
   Vec unknowns() const { return unknowns_; }
   Vec accepted() const { return accepted_; }
 
-  /// From the last accepted state to equilibrium at `target`. Collective.
+  /// From the last accepted state to equilibrium at `target`, with the remedies of lib/solve when plain iterations do
+  /// not get there. Collective.
   SolveOutcome solve(double target);
+  /// What went on in the last solve that plain iterations did not get through; absent if there was none, or with
+  /// bounds.
+  const std::optional<Trouble>& trouble() const { return trouble_; }
+  /// How often each of remedies() was tried and helped; empty if none ever was.
+  std::vector<Ladder::Use> remedy_uses() const { return ladder_ ? ladder_->uses() : std::vector<Ladder::Use>{}; }
   /// Accepts the unknowns, or goes back to the last accepted ones. Collective.
   void commit();
   void roll_back();
@@ -51,12 +59,20 @@ class IncrementSolver {
   void revisit(const SolvedState& state);
 
  private:
+  void start(double target);
+  SolveOutcome solve_plainly();
+  std::unique_ptr<Ladder> make_ladder();
+
   Scene& scene_;
+  std::function<void(const std::string&)> tell_;
   std::string linear_solver_;
   std::unique_ptr<BoundedNewton> bounded_;     // with bounds, or
   std::unique_ptr<CondensedNewton> condensed_; // with conditions on relative motions, else newton_
   std::unique_ptr<Newton> newton_;
   std::unique_ptr<UzawaLoop> uzawa_;
+  std::unique_ptr<Ladder> ladder_; // from the first trouble on
+  std::optional<Trouble> trouble_;
+  double target_ = 0.0; // of the increment being solved
   VecHandle unknowns_, accepted_;
 };
 

@@ -70,7 +70,7 @@ std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledge
   }
   if (measures_path(scene.deck)) columns.emplace_back("path_error");
   for (const char* quantity : {"energy_stored", "energy_dissipated", "energy_external_work", "newton", "linear",
-                               "outer", "residual", "certified"})
+                               "outer", "remedy", "residual", "certified"})
     columns.emplace_back(quantity);
   return columns;
 }
@@ -100,7 +100,7 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
   if (measures_path(scene.deck)) row.push_back(report.path_error);
   row.insert(row.end(), {ledger.stored_energy(), ledger.dissipated_energy(), ledger.external_work(),
                          double(report.outcome.newton), double(report.outcome.linear), double(report.outcome.outer),
-                         report.outcome.residual, report.certified ? 1.0 : 0.0});
+                         double(report.outcome.rung), report.outcome.residual, report.certified ? 1.0 : 0.0});
   return row;
 }
 
@@ -161,8 +161,8 @@ nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds) {
   nlohmann::ordered_json phases;
   double timed = 0.0;
   // Ranks go through the same phases; one that a rank never entered counts as zero there.
-  for (const char* phase : {"mesh", "set up", "search", "pattern", "bulk", "loads", "support", "contact", "matrix",
-                            "linear solver", "certificate", "output", "error estimate"}) {
+  for (const char* phase : {"mesh", "set up", "search", "pattern", "bulk", "loads", "support", "stabilization",
+                            "contact", "matrix", "linear solver", "certificate", "output", "error estimate"}) {
     const auto& seconds = PhaseTimer::of_run().seconds();
     const auto found = seconds.find(phase);
     double sum = found == seconds.end() ? 0.0 : found->second;
@@ -197,6 +197,27 @@ nlohmann::ordered_json contact_results(const Scene& scene, const Ledger& ledger,
                           {"dissipation", ledger.dissipated_by_pair()[i]}};
   }
   return results;
+}
+
+nlohmann::ordered_json describe_remedies(const std::vector<Ladder::Use>& uses) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < uses.size(); ++i)
+    if (uses[i].tried > 0) json[name_of(remedies()[i])] = {{"tried", uses[i].tried}, {"helped", uses[i].helped}};
+  return json;
+}
+
+nlohmann::ordered_json describe_trouble(const Trouble& trouble) {
+  nlohmann::ordered_json json;
+  json["cycle_length"] = trouble.cycle;
+  json["residual"] = trouble.residual;
+  json["largest_status_change"] = trouble.largest_change;
+  json["flipping_points"] = {{"count", trouble.num_flipping}, {"first", nlohmann::ordered_json::array()}};
+  for (const auto& point : trouble.points)
+    json["flipping_points"]["first"].push_back({{"pair", point.name}, {"place", point.place}});
+  json["free_motions"] = nlohmann::ordered_json::array();
+  for (const auto& motion : trouble.free)
+    json["free_motions"].push_back({{"body", motion.body}, {"direction", motion.direction}});
+  return json;
 }
 
 nlohmann::ordered_json describe_scene(const Scene& scene) {

@@ -4,7 +4,7 @@
 #include "ledger.hpp"
 #include "output/fields.hpp"
 #include "scene.hpp"
-#include "solve/newton.hpp"
+#include "solve/ladder.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -34,6 +34,10 @@ nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds);
 /// slide and are open, and the dissipation since the start.
 nlohmann::ordered_json contact_results(const Scene& scene, const Ledger& ledger,
                                        const std::vector<ContactTotals>& totals);
+/// How often each remedy was tried and helped; nothing if none was tried.
+nlohmann::ordered_json describe_remedies(const std::vector<Ladder::Use>& uses);
+/// Cycle, points that flip and bodies that nothing holds, for programs to read.
+nlohmann::ordered_json describe_trouble(const Trouble& trouble);
 /// Sizes, effects on and off, pairs and how they are enforced. Collective.
 nlohmann::ordered_json describe_scene(const Scene& scene);
 

@@ -57,6 +57,7 @@ class Run {
   int march_step(std::size_t step);
   int stop(const Stretch& stretch);
   int cut_back(Stretch& stretch, double target, const std::string& reason);
+  void give_up(const Stretch& stretch, double target, const std::string& reason);
   int accept_whole(Stretch& stretch, const SolveOutcome& outcome);
   int compare_halves(Stretch& stretch, const SolveOutcome& outcome, double seconds);
   int control_path(Stretch& stretch, const SolvedState& whole, const std::vector<SolvedState>& halves, double seconds);
@@ -90,6 +91,7 @@ class Run {
   // Counts for the summary.
   int increments_ = 0, cutbacks_ = 0, newton_iterations_ = 0, linear_iterations_ = 0, outer_iterations_ = 0,
       factorizations_ = 0;
+  nlohmann::ordered_json diagnosis_; // of a run that gave up
   CertificateRecord certificate_;
   double largest_residual_ = 0.0; // of the accepted increments
   std::vector<ContactTotals> last_totals_;
@@ -103,7 +105,9 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments, Adaptation* adaptation)
     default_option("-" + name, value);
   directory_ = arguments.out.value_or(scene_->deck.output.directory);
   ledger_ = std::make_unique<Ledger>(*scene_);
-  solver_ = std::make_unique<IncrementSolver>(*scene_, [this] { return stop_requested_ = interrupted(comm_); });
+  solver_ = std::make_unique<IncrementSolver>(
+      *scene_, [this] { return stop_requested_ = interrupted(comm_); },
+      [this](const std::string& line) { log_.line("  " + line); });
   if (measures_path(scene_->deck)) path_.emplace();
   if (arguments_.restart) restart();
 }
@@ -230,11 +234,32 @@ int Run::stop(const Stretch& stretch) {
 
 int Run::cut_back(Stretch& stretch, double target, const std::string& reason) {
   ++cutbacks_;
-  solver_->roll_back();
   log_.line(formatted("  %s: t = %g not reached: %s", stretch.name.c_str(), target, reason.c_str()));
-  if (stretch.control.rejected()) return status_certified;
-  log_.line("  no smaller increment is allowed: giving up");
+  if (stretch.control.rejected()) {
+    solver_->roll_back();
+    return status_certified;
+  }
+  give_up(stretch, target, reason);
   return status_not_converged;
+}
+
+/// Leaves what there is to look at: the last iterate as failed.h5 and failed.xdmf, the last accepted state as
+/// checkpoint.
+void Run::give_up(const Stretch& stretch, double target, const std::string& reason) {
+  log_.line("  no smaller increment is allowed: giving up; the last iterate is in failed.xdmf");
+  diagnosis_ = {{"step", stretch.name}, {"time", target}, {"reason", reason}};
+  if (const auto& trouble = solver_->trouble()) diagnosis_.update(describe_trouble(*trouble));
+  {
+    const Phase phase("output");
+    FieldsWriter failed(scene_->mesh, directory_, scene_->deck.title + " (not converged)", {}, "failed");
+    const auto state = scene_->problem->state_at(solver_->unknowns());
+    std::vector<ContactSamples> samples;
+    for (auto* contact : scene_->contacts)
+      samples.push_back(contact->samples(state));
+    write_fields(*scene_, failed, solver_->unknowns(), samples);
+  }
+  solver_->roll_back();
+  write_checkpoint_file(stretch);
 }
 
 int Run::accept_whole(Stretch& stretch, const SolveOutcome& outcome) {
@@ -364,6 +389,7 @@ void Run::progress(const std::string& step, const IncrementReport& report, const
   const double left = done > 0.0 ? (now() - started_) * (end - time) / done : 0.0;
   std::string line = formatted("  %-12s t = %-10.6g newton %d", step.c_str(), time, outcome.newton);
   if (outcome.outer > 0) line += formatted(" in %d outer", outcome.outer);
+  if (outcome.rung > 0) line += formatted(" by %s", name_of(remedies()[outcome.rung - 1]));
   if (outcome.linear > outcome.newton) line += formatted(", linear %d", outcome.linear);
   line += formatted(", residual %.1e", outcome.residual);
   double pressure = 0.0;
@@ -436,7 +462,10 @@ int Run::finish(int status, const std::string& reason) {
   summary["linear_iterations"] = linear_iterations_;
   summary["outer_iterations"] = outer_iterations_;
   summary["factorizations"] = factorizations_;
-  summary["remedies"] = {{"cutbacks", cutbacks_}, {"supported_bodies", scene_->floating}};
+  summary["remedies"] = describe_remedies(solver_->remedy_uses());
+  summary["remedies"]["cutbacks"] = cutbacks_;
+  summary["remedies"]["supported_bodies"] = scene_->floating;
+  if (!diagnosis_.is_null()) summary["diagnosis"] = diagnosis_;
   summary["time"] = scene_->problem->time();
   summary["contact"] = contact_results(*scene_, *ledger_, last_totals_);
   summary["energy"] = {{"stored", ledger_->stored_energy()},

@@ -205,6 +205,13 @@ void check_friction_factors(const Deck& deck, const Mesh& mesh) {
 
 } // namespace
 
+std::vector<double> Scene::stiffness() const {
+  std::vector<double> stiffness;
+  for (std::size_t b = 0; b < mesh.bodies.size(); ++b)
+    stiffness.push_back(bulk->law(static_cast<std::int32_t>(b)).stiffness());
+  return stiffness;
+}
+
 double Scene::bulk_energy(Vec unknowns) const {
   return sum_over_ranks(mesh.comm, bulk->stored_energy(problem->state_at(unknowns)));
 }

@@ -31,6 +31,8 @@ struct Scene {
   std::unique_ptr<CondensedContact> conditions;  // absent without `semismooth` pairs with the dual basis
   std::vector<std::string> floating;             // bodies held by contact alone
 
+  /// Young's modulus by body.
+  std::vector<double> stiffness() const;
   /// Energy stored in all bodies. Collective.
   double bulk_energy(Vec unknowns) const;
   /// Energy that their materials have dissipated since the start. Collective.

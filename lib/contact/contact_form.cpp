@@ -148,6 +148,7 @@ void ContactForm::evaluate(const State& state) {
     touches = touches || active_[i];
   }
   if (state.first_guess && !any_of_all(layout_.mesh().comm, touches)) guess_contact();
+  if (!holds_.empty()) apply_holds();
   if (tangential_) evaluate_friction(state);
 }
 

@@ -8,6 +8,7 @@
 #include "contact/pair_report.hpp"
 #include "contact/tangential_part.hpp"
 #include "form/form.hpp"
+#include "form/switching.hpp"
 
 #include <memory>
 #include <string>
@@ -19,7 +20,7 @@ namespace amontons {
 /// both).
 NodeField multiplier_nodes(const Mesh& mesh, const std::string& pair, const std::string& slave);
 
-class ContactForm : public Form, public PairReport {
+class ContactForm : public Form, public PairReport, public Switching {
  public:
   /// Searches. Collective.
   ContactForm(const DofLayout& layout, ContactPair pair);
@@ -42,6 +43,18 @@ class ContactForm : public Form, public PairReport {
   void restore(const ContactHistory& history) override;
   double stored_energy(const State& state) override;
   bool tangent_is_symmetric() const override { return !tangential_; }
+
+  // contact_switching.cpp
+  Switching* switching() override { return this; }
+  const std::string& switch_name() const override { return pair_.name; }
+  std::array<double, 3> switch_place(std::size_t point) const override { return points_.points()[point].place; }
+  std::vector<std::uint8_t> branches() const override;
+  void hold(std::vector<Hold> holds) override;
+  std::vector<std::uint8_t> wanted() const override { return wanted_; }
+  bool has_limits() const override { return tangential_ != nullptr; }
+  void hold_limits() override;
+  void release_limits() override;
+  void scale_augmentation(double factor) override;
 
   const ContactPair& pair() const override { return pair_; }
   const NodeField& nodes() const override { return nodes_; }
@@ -69,6 +82,7 @@ class ContactForm : public Form, public PairReport {
   void evaluate(const State& state);
   void fetch_multipliers(const State& state);
   void guess_contact();
+  void apply_holds();
   void evaluate_friction(const State& state);
   double gap_at(const ContactPoint& point, const State& state) const;
   double multiplier_at(const ContactPoint& point) const;
@@ -97,6 +111,8 @@ class ContactForm : public Form, public PairReport {
   std::vector<double> gap_, lambda_, augmented_;
   std::vector<std::uint8_t> active_, assembled_active_, coupled_;
   bool assembled_ = false;
+  std::vector<Hold> holds_;          // empty: none
+  std::vector<std::uint8_t> wanted_; // active_ before holds
   std::unique_ptr<TangentialPart> tangential_;
   std::vector<double> normal_traction_; // for it
   VecHandle local_multipliers_;

@@ -74,6 +74,7 @@ ContactPoints::ContactPoints(const DofLayout& layout, const ContactPair& pair)
     place_by_segments(segment->degree);
   else
     place_by_rule(std::visit([](const auto& integration) { return integration.degree; }, pair.integration));
+  if (std::holds_alternative<Penalty>(pair.enforcement)) find_mean_size();
   if (master_) {
     search();
     average_over_master();
@@ -267,7 +268,26 @@ void ContactPoints::set_epsilon(ContactPoint& point) const {
     const double other = pair_.stiffness[master_->body(point.master)];
     stiffness = 2.0 * stiffness * other / (stiffness + other);
   }
-  point.epsilon = pair_.alpha * stiffness / point.size;
+  // A penalty carries its pressure by overlap: under a uniform pressure facets of different sizes must overlap alike,
+  // or the pressure is not uniform. Multipliers make up for any ε.
+  const double h = std::holds_alternative<Penalty>(pair_.enforcement) ? mean_size_ : point.size;
+  point.epsilon = augmentation_ * pair_.alpha * stiffness / h;
+}
+
+void ContactPoints::find_mean_size() {
+  double sums[2] = {0.0, 0.0};
+  for (const auto& point : points_) {
+    sums[0] += point.weight * point.size;
+    sums[1] += point.weight;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  mean_size_ = sums[0] / sums[1];
+}
+
+void ContactPoints::scale_augmentation(double factor) {
+  augmentation_ = factor;
+  for (auto& point : points_)
+    set_epsilon(point);
 }
 
 void ContactPoints::attach(ContactPoint& point, std::int32_t facet, std::span<const double> xi) const {

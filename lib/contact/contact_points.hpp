@@ -62,6 +62,8 @@ class ContactPoints {
   /// Moves a rigid master to where it is at time t and takes normals and gaps anew.
   void move_rigid_master(double t);
   std::array<double, 3> rigid_shift() const { return shift_; }
+  /// Makes ε `factor` times what the pair says.
+  void scale_augmentation(double factor);
 
  private:
   /// What the search needs to know of a point besides its place.
@@ -83,6 +85,7 @@ class ContactPoints {
   void find_along_normal(ContactPoint& point, std::span<const double> slave_normal);
   void attach(ContactPoint& point, std::int32_t facet, std::span<const double> xi) const;
   void set_epsilon(ContactPoint& point) const;
+  void find_mean_size();
 
   const Mesh& mesh_;
   const ContactPair& pair_;
@@ -94,6 +97,8 @@ class ContactPoints {
   std::vector<Scratch> scratch_; // per point, during construction
   std::unique_ptr<MasterSurface> master_;
   std::array<double, 3> shift_{};
+  double augmentation_ = 1.0;       // factor of ε
+  double mean_size_ = 0.0;          // of the slave facets, weighted with their area; of a penalty only
   std::vector<std::int32_t> found_; // scratch
 };
 

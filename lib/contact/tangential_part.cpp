@@ -71,6 +71,7 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
   responses_.resize(n);
   jump_.resize(n);
   motion_.resize(n);
+  pressure_.assign(n, 0.0);
   active_.assign(n, 0);
   pressed_.assign(n, 0);
   assembled_status_.assign(n, unknown_status);
@@ -146,6 +147,7 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
       jump_[i][c] -= shift[c];
       motion_[i][c] = jump_[i][c] - old.jump[c];
     }
+    pressure_[i] = held_pressure_.empty() ? std::max(0.0, -sigma[i]) : held_pressure_[i];
     if (!active[i]) {
       responses_[i] = {};
       pressed_[i] = 0;
@@ -155,9 +157,8 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
     const auto increment = tangential(motion_[i], point.normal);
     for (int c = 0; c < 3; ++c)
       trial[c] = held[c] + point.epsilon * increment[c];
-    pressed_[i] = sigma[i] < 0.0;
-    responses_[i] =
-        return_map(pair_.friction->law, contexts_[i], trial, std::max(0.0, -sigma[i]), point.epsilon, old.state);
+    pressed_[i] = held_pressure_.empty() && sigma[i] < 0.0;
+    responses_[i] = return_map(pair_.friction->law, contexts_[i], trial, pressure_[i], point.epsilon, old.state);
   }
 }
 
@@ -315,6 +316,8 @@ void TangentialPart::remember_tangent(bool guess_stick) {
   for (std::size_t i = 0; i < responses_.size(); ++i)
     assembled_status_[i] = guess_stick ? unknown_status : static_cast<std::uint8_t>(status(i));
 }
+
+void TangentialPart::hold_pressure() { held_pressure_ = pressure_; }
 
 // --- history and multipliers -----------------------------------------------------------------------------------------
 

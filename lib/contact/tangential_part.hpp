@@ -46,6 +46,11 @@ class TangentialPart {
   bool tangent_changed() const;
   void remember_tangent(bool guess_stick);
 
+  /// From the next evaluation on the law is asked with the pressures of the last one, which then do not vary, until
+  /// they are released: friction with a given bound.
+  void hold_pressure();
+  void release_pressure() { held_pressure_.clear(); }
+
   void commit(const State& state);
   void roll_back();
   /// Adds what was last accepted to the pair's history, and makes a history the last accepted one.
@@ -89,8 +94,9 @@ class TangentialPart {
   // At the last evaluation, per point:
   std::vector<FrictionContext> contexts_;
   std::vector<FrictionResponse> responses_;
-  std::vector<std::array<double, 3>> jump_;   // u_slave − u_master − rigid shift
-  std::vector<std::array<double, 3>> motion_; // jump less that of the last accepted state
+  std::vector<std::array<double, 3>> jump_;      // u_slave − u_master − rigid shift
+  std::vector<std::array<double, 3>> motion_;    // jump less that of the last accepted state
+  std::vector<double> pressure_, held_pressure_; // held: empty when released
   std::vector<std::uint8_t> active_, pressed_, assembled_status_;
   VecHandle local_multipliers_;
   ScatterHandle multiplier_scatter_;

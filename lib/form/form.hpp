@@ -70,6 +70,8 @@ class Coupling {
   virtual void add(std::span<const PetscInt> equations) = 0;
 };
 
+class Switching;
+
 class Form {
  public:
   Form() = default;
@@ -92,6 +94,9 @@ class Form {
   /// Does the state need couplings that couple() did not name when last called? Asked on each rank for itself; a form
   /// that says yes names them from then on.
   virtual bool coupling_changed(const State&) { return false; }
+
+  /// The form as one with branches; null for a form without any.
+  virtual Switching* switching() { return nullptr; }
 
   /// Accepts the state as the start of the next increment, or goes back to the last accepted one.
   virtual void commit(const State&) {}

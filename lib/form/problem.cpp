@@ -192,6 +192,7 @@ bool Problem::residual(Vec unknowns, Vec result) {
     for (const double force : residual.nodal())
       squares[i] += force * force;
   }
+  if (support_) support_->add_residual(state, residual);
   MPI_Allreduce(MPI_IN_PLACE, squares.data(), static_cast<int>(squares.size()), MPI_DOUBLE, MPI_SUM, comm());
   for (const double square : squares)
     largest = std::max(largest, square);
@@ -258,6 +259,7 @@ void Problem::add_changing(const State& state, Mat matrix) {
       const Phase phase(form->name());
       form->add_tangent(state, tangent);
     }
+  if (support_) support_->add_tangent(state, tangent);
   const Phase phase("matrix");
   AMT_PETSC(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
@@ -328,6 +330,7 @@ bool Problem::tangent(Vec unknowns, Mat matrix) {
     coupling_changed = form->coupling_changed(state) || coupling_changed;
     tangent_changed = form->tangent_changed(state) || tangent_changed;
   }
+  if (support_) tangent_changed = support_->tangent_changed(state) || tangent_changed;
   first_guess_ = false;
   if (any_rank(coupling_changed)) build_pattern(matrix);
   if (!any_rank(tangent_changed || !tangent_ready_)) return false;
@@ -339,6 +342,23 @@ bool Problem::tangent(Vec unknowns, Mat matrix) {
   if (tangent_is_symmetric()) AMT_PETSC(MatSetOption(matrix, MAT_SYMMETRIC, PETSC_TRUE));
   tangent_ready_ = true;
   return true;
+}
+
+std::vector<Switching*> Problem::switching() const {
+  std::vector<Switching*> found;
+  for (const auto& form : forms_)
+    if (auto* switching = form->switching()) found.push_back(switching);
+  return found;
+}
+
+void Problem::lean_on(Form& support) {
+  support_ = &support;
+  tangent_ready_ = false;
+}
+
+void Problem::stand_alone() {
+  support_ = nullptr;
+  tangent_ready_ = false;
 }
 
 double Problem::stored_energy(Vec unknowns) {

@@ -5,6 +5,7 @@
 #include "base/expression.hpp"
 #include "form/form.hpp"
 #include "form/sparsity.hpp"
+#include "form/switching.hpp"
 
 #include <functional>
 #include <memory>
@@ -90,6 +91,13 @@ class Problem {
   const std::vector<PrescribedDisplacement>& prescribed() const { return prescribed_; }
   double stored_energy(Vec unknowns);
 
+  /// The forms that have branches, in the order of the forms.
+  std::vector<Switching*> switching() const;
+  /// Adds the form to residual and tangent until it is taken out again: a support on the way to a solution. It must not
+  /// couple equations that the others do not, has no history here, and is not owned.
+  void lean_on(Form& support);
+  void stand_alone();
+
  private:
   class MatrixTangent;
   class DiagonalTangent;
@@ -104,6 +112,7 @@ class Problem {
 
   const DofLayout& layout_;
   std::vector<std::unique_ptr<Form>> forms_;
+  Form* support_ = nullptr; // see lean_on
   std::vector<PrescribedDisplacement> prescribed_;
   std::vector<std::uint8_t> prescribed_flags_; // per owned equation
   std::vector<PetscInt> prescribed_equations_; // owned, ascending

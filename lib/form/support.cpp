@@ -93,6 +93,13 @@ std::vector<std::uint8_t> find_floating_bodies(const Mesh& mesh, const std::vect
   return floating;
 }
 
+std::vector<double> body_diagonals(const Mesh& mesh) {
+  std::vector<double> diagonals;
+  for (const auto& box : boxes_of_bodies(mesh, nodes_of_bodies(mesh)))
+    diagonals.push_back(box.diagonal(mesh.dim));
+  return diagonals;
+}
+
 SupportForm::SupportForm(const DofLayout& layout, const std::vector<std::uint8_t>& floating,
                          const std::vector<double>& stiffness)
     : layout_(layout), node_stiffness_(layout.mesh().num_owned, 0.0) {

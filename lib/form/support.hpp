@@ -15,6 +15,9 @@ namespace amontons {
 std::vector<std::uint8_t> find_floating_bodies(const Mesh& mesh, const std::vector<PrescribedDisplacement>& prescribed,
                                                bool axisymmetric);
 
+/// Diagonal of the box around each body of the mesh, the same on every rank. Collective.
+std::vector<double> body_diagonals(const Mesh& mesh);
+
 /// Adds `support_ratio` × stiffness × size^(dim − 2) per body, shared equally by its nodes, to the diagonal of floating
 /// bodies.
 class SupportForm : public Form {

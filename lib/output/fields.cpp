@@ -114,7 +114,10 @@ std::vector<double> on_surface_nodes(const Mesh& mesh, const FacetSet& facets, c
   return values;
 }
 
-std::string link(const std::string& path) { return "fields.h5:" + path; }
+/// A dataset as the XDMF file beside the HDF5 file refers to it.
+std::string link(const std::string& h5_path, const std::string& dataset) {
+  return std::filesystem::path(h5_path).filename().string() + ":" + dataset;
+}
 
 } // namespace
 
@@ -126,8 +129,8 @@ std::string dataset_name(const std::string& name) {
 }
 
 FieldsWriter::FieldsWriter(const Mesh& mesh, const std::string& directory, const std::string& title,
-                           std::optional<double> resume_time)
-    : mesh_(&mesh), h5_path_(directory + "/fields.h5"), xdmf_path_(directory + "/fields.xdmf") {
+                           std::optional<double> resume_time, const std::string& stem)
+    : mesh_(&mesh), h5_path_(directory + "/" + stem + ".h5"), xdmf_path_(directory + "/" + stem + ".xdmf") {
   start_files(title, resume_time);
   write_mesh();
 }
@@ -222,7 +225,7 @@ const FieldsWriter::Surface& FieldsWriter::surface(const std::string& pair, cons
 class FieldsWriter::StepFile {
  public:
   StepFile(MPI_Comm comm, const std::string& path, std::string group)
-      : file_(comm, path, FileUse::Append), group_(std::move(group)) {}
+      : h5_path_(path), file_(comm, path, FileUse::Append), group_(std::move(group)) {}
 
   Hdf5File& file() { return file_; }
   const std::string& group() const { return group_; }
@@ -232,10 +235,11 @@ class FieldsWriter::StepFile {
            std::span<const double> part) {
     const std::string path = group_ + below + "/" + dataset_name(name);
     file_.write(path, components, part);
-    grid.attributes.push_back({name, xdmf_type(components), "Node", {link(path), rows, components}});
+    grid.attributes.push_back({name, xdmf_type(components), "Node", {link(h5_path_, path), rows, components}});
   }
 
  private:
+  std::string h5_path_;
   Hdf5File file_;
   std::string group_;
 };
@@ -249,12 +253,12 @@ XdmfGrid FieldsWriter::points_grid(StepFile& out, const PointFields& points) con
   for (const auto& place : points.places)
     places.insert(places.end(), place.begin(), place.end());
   out.file().write(out.group() + below + "/places", 3, places);
-  grid.geometry = {link(out.group() + below + "/places"), grid.num_cells, 3};
+  grid.geometry = {link(h5_path_, out.group() + below + "/places"), grid.num_cells, 3};
   // One of ParaView's two readers shows no vertex unless told which point it is.
   std::vector<PetscInt> vertices(points.places.size());
   std::iota(vertices.begin(), vertices.end(), static_cast<PetscInt>(first_row(mesh_->comm, vertices.size())));
   out.file().write(out.group() + below + "/vertices", vertices);
-  grid.topology = {link(out.group() + below + "/vertices"), grid.num_cells, 1, true};
+  grid.topology = {link(h5_path_, out.group() + below + "/vertices"), grid.num_cells, 1, true};
   grid.is_cloud = true;
   for (const auto& field : points.fields)
     out.add(grid, below, field.name, field.components, grid.num_cells, field.values);
@@ -262,7 +266,7 @@ XdmfGrid FieldsWriter::points_grid(StepFile& out, const PointFields& points) con
 }
 
 XdmfGrid FieldsWriter::volume_grid(StepFile& out, const FieldsStep& step) const {
-  const std::string mesh = link(run_ + "/mesh/");
+  const std::string mesh = link(h5_path_, run_ + "/mesh/");
   XdmfGrid grid;
   grid.name = "volume";
   grid.num_cells = num_cells_;
@@ -279,7 +283,7 @@ XdmfGrid FieldsWriter::volume_grid(StepFile& out, const FieldsStep& step) const 
 XdmfGrid FieldsWriter::surface_grid(StepFile& out, const FieldsStep& step, const SurfaceFields& fields) const {
   const Surface& numbering = surfaces_.at(fields.name);
   const std::string below = "/surfaces/" + dataset_name(fields.name);
-  const std::string fixed = link(run_ + below);
+  const std::string fixed = link(h5_path_, run_ + below);
   XdmfGrid grid;
   grid.name = fields.name;
   grid.num_cells = numbering.num_facets;

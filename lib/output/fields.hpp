@@ -76,8 +76,9 @@ class FieldsWriter {
   /// Starts the files in `directory`. With `resume_time` the steps up to that time stay, if there are any. Throws
   /// UserError when a file cannot be written or an existing one to go on with is damaged. `mesh` must outlive the
   /// writer. Collective.
+  /// `stem`: the files' name without .h5 and .xdmf.
   FieldsWriter(const Mesh& mesh, const std::string& directory, const std::string& title,
-               std::optional<double> resume_time = {});
+               std::optional<double> resume_time = {}, const std::string& stem = "fields");
 
   /// Collective.
   void write(const FieldsStep& step);

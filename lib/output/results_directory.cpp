@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array run_files = {"fields.h5",    "fields.xdmf",   "history.csv",
-                                  "summary.json", "checkpoint.h5", "log.txt"};
+constexpr std::array run_files = {"fields.h5",     "fields.xdmf", "history.csv", "summary.json",
+                                  "checkpoint.h5", "log.txt",     "failed.h5",   "failed.xdmf"};
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
   throw UserError("The results directory " + path.string() + " cannot be used: " + reason +

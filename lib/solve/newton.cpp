@@ -33,6 +33,8 @@ std::string in_words(SNESConvergedReason reason, double relative) {
     return "the residual could not be evaluated";
   case SNES_DIVERGED_FUNCTION_COUNT:
     return "too many residual evaluations";
+  case SNES_DIVERGED_LOCAL_MIN: // given by test_convergence
+    return "Newton's method repeats itself";
   case SNES_BREAKOUT_INNER_ITER:
     return "interrupted";
   default:
@@ -49,7 +51,55 @@ SNESLineSearch backtracking(SNES snes) {
   return is_backtracking ? search : nullptr;
 }
 
+/// Length of a step along −y for which the energy is least: the root of φ'(λ) = −F(x − λ y) · y, which rises with λ
+/// for a convex energy. Full steps that do not pass it are taken whole; a step that does not point downhill, too.
+class EnergySearch {
+ public:
+  explicit EnergySearch(SNESLineSearch search) {
+    AMT_PETSC(SNESLineSearchGetSNES(search, &snes_));
+    AMT_PETSC(SNESLineSearchGetVecs(search, &start_, &force_, &step_, &next_, &next_force_));
+  }
+  /// Leaves the new iterate and its residual where SNES looks for them, and returns the length.
+  double run() {
+    PetscScalar promised = 0.0;
+    AMT_PETSC(VecDot(force_, step_, &promised));
+    double low = 0.0, high = 1.0, length = 1.0, slope = slope_at(1.0), low_slope = -promised, high_slope = slope;
+    for (int i = 0; i < most_trials && promised > 0.0 && high_slope > 0.0; ++i) {
+      if (std::abs(slope) <= remaining_slope * promised) break;
+      // Regula falsi, by halves where it would hardly move; a slope that is not a number counts as beyond the root.
+      length = low + (high - low) * std::clamp(-low_slope / (high_slope - low_slope), 0.1, 0.9);
+      if (!std::isfinite(length)) length = 0.5 * (low + high);
+      slope = slope_at(length);
+      (slope < 0.0 ? low : high) = length;
+      (slope < 0.0 ? low_slope : high_slope) = slope;
+    }
+    AMT_PETSC(VecCopy(next_, start_));
+    AMT_PETSC(VecCopy(next_force_, force_));
+    return length;
+  }
+
+ private:
+  static constexpr int most_trials = 30;
+  static constexpr double remaining_slope = 0.1; // of the slope at the start
+  double slope_at(double length) {
+    PetscScalar slope = 0.0;
+    AMT_PETSC(VecWAXPY(next_, -length, step_, start_));
+    AMT_PETSC(SNESComputeFunction(snes_, next_, next_force_));
+    AMT_PETSC(VecDot(next_force_, step_, &slope));
+    return -slope;
+  }
+  SNES snes_ = nullptr;
+  Vec start_ = nullptr, force_ = nullptr, step_ = nullptr, next_ = nullptr, next_force_ = nullptr;
+};
+
 } // namespace
+
+void SolveOutcome::add_effort(const SolveOutcome& other) {
+  newton += other.newton;
+  linear += other.linear;
+  outer += other.outer;
+  factorizations += other.factorizations;
+}
 
 void default_option(const std::string& name, const std::string& value) {
   PetscBool present = PETSC_FALSE;
@@ -132,7 +182,8 @@ SolveOutcome outcome_of(SNES snes, const Problem& problem) {
   AMT_PETSC(SNESGetLinearSolveIterations(snes, &linear));
   AMT_PETSC(SNESGetFunctionNorm(snes, &norm));
   SolveOutcome outcome;
-  outcome.converged = reason > 0 && reason != SNES_BREAKOUT_INNER_ITER;
+  outcome.interrupted = reason == SNES_BREAKOUT_INNER_ITER;
+  outcome.converged = reason > 0 && !outcome.interrupted;
   outcome.newton = static_cast<int>(newton);
   outcome.linear = static_cast<int>(linear);
   const double scale = problem.force_scale();
@@ -146,7 +197,7 @@ Newton::~Newton() = default;
 
 Newton::Newton(Problem& problem, std::function<bool()> interrupted)
     : problem_(problem), interrupted_(std::move(interrupted)), matrix_(problem.new_matrix()),
-      residual_(problem.layout().new_vector()) {
+      residual_(problem.layout().new_vector()), watch_(problem) {
   AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
   AMT_PETSC(SNESSetFunction(snes_, residual_, evaluate_residual, this));
   AMT_PETSC(SNESSetJacobian(snes_, matrix_, matrix_, evaluate_tangent, this));
@@ -156,8 +207,38 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
   sufficient_decrease_ = decrease_asked_for(snes_);
+  SNESLineSearch search = nullptr;
+  SNESLineSearchType type = nullptr;
+  AMT_PETSC(SNESGetLineSearch(snes_, &search));
+  AMT_PETSC(SNESLineSearchGetType(search, &type));
+  if (type) chosen_search_ = type;
   if (KeptFactorization::is_asked_for(snes_)) kept_factorization_ = std::make_unique<KeptFactorization>(problem, snes_);
   if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
+}
+
+void Newton::set_steps(const StepLength& steps) {
+  SNESLineSearch search = nullptr;
+  AMT_PETSC(SNESGetLineSearch(snes_, &search));
+  if (std::holds_alternative<ChosenSteps>(steps)) {
+    AMT_PETSC(SNESLineSearchSetType(search, chosen_search_.c_str()));
+    AMT_PETSC(SNESLineSearchSetFromOptions(search));
+  } else if (problem_.tangent_is_symmetric() && problem_.layout().num_extra() == 0) {
+    AMT_PETSC(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
+    AMT_PETSC(SNESLineSearchShellSetUserFunc(search, search_energy, this));
+  } else {
+    AMT_PETSC(
+        SNESLineSearchSetType(search, chosen_search_ == SNESLINESEARCHBT ? SNESLINESEARCHNLEQERR : SNESLINESEARCHBT));
+  }
+  ask_for_decrease(snes_, sufficient_decrease_);
+}
+
+PetscErrorCode Newton::search_energy(SNESLineSearch search, void* self) {
+  auto& newton = *static_cast<Newton*>(self);
+  return guarded(newton.kept_, [&] {
+    const double length = EnergySearch(search).run();
+    AMT_PETSC(SNESLineSearchSetLambda(search, length));
+    AMT_PETSC(SNESLineSearchComputeNorms(search));
+  });
 }
 
 PetscErrorCode Newton::evaluate_residual(SNES, Vec unknowns, Vec result, void* self) {
@@ -182,15 +263,47 @@ PetscErrorCode Newton::test_convergence(SNES snes, PetscInt iteration, PetscReal
   auto& newton = *static_cast<Newton*>(self);
   return guarded(newton.kept_, [&] {
     *reason = judge_residual(snes, newton.problem_, iteration, norm);
+    newton.observe(norm);
     if (newton.interrupted_ && newton.interrupted_())
       *reason = SNES_BREAKOUT_INNER_ITER;
+    else if (*reason == SNES_CONVERGED_ITERATING && (newton.record_.cycle() > 0 || newton.record_.rests()))
+      *reason = SNES_DIVERGED_LOCAL_MIN;
     else if (*reason > 0 && iteration < newton.least_iterations_ && norm > 1e-15 * newton.problem_.force_scale())
       *reason = SNES_CONVERGED_ITERATING;
   });
 }
 
+void Newton::observe(double norm) {
+  const auto look = watch_.look();
+  const double scale = problem_.force_scale();
+  record_.add({.pattern = look.pattern, .changed = look.changed, .residual = scale > 0.0 ? norm / scale : 0.0});
+}
+
+Trouble Newton::trouble() const {
+  constexpr std::size_t most_named = 3;
+  const auto outcome = outcome_of(snes_, problem_);
+  Trouble trouble;
+  trouble.solver = outcome.reason;
+  trouble.cycle = record_.cycle();
+  trouble.rests = record_.rests();
+  trouble.residual = outcome.residual;
+  trouble.largest_change = record_.largest_change();
+  if (watch_.has_points()) {
+    const std::size_t looks = trouble.rests       ? 1
+                              : trouble.cycle > 0 ? static_cast<std::size_t>(trouble.cycle) + 1
+                                                  : StatusWatch::most_looks;
+    const auto named = watch_.name(watch_.flipping(looks, StatusWatch::Flip::Branch), most_named);
+    trouble.num_flipping = named.count;
+    trouble.points = named.first;
+  }
+  trouble.free = find_free_motions(problem_, matrix_);
+  return trouble;
+}
+
 SolveOutcome Newton::solve(Vec unknowns) {
   factorizations_ = 0;
+  record_.clear();
+  watch_.clear();
   kept_ = nullptr;
   if (kept_factorization_) kept_factorization_->begin();
   const Phase phase("linear solver"); // the phases of forms inside stop this clock

@@ -4,10 +4,13 @@
 #pragma once
 
 #include "form/problem.hpp"
+#include "solve/iteration_record.hpp"
+#include "solve/trouble.hpp"
 
 #include <functional>
 #include <memory>
 #include <string>
+#include <variant>
 
 namespace amontons {
 
@@ -22,6 +25,10 @@ struct SolveOutcome {
   int factorizations = 0; // or preconditioner set-ups
   double residual = 0.0;  // out-of-balance force relative to the force scale
   std::string reason;     // in words
+  bool interrupted = false;
+  int rung = 0; // of the ladder of remedies that it took, counted from 1; 0: none
+  /// Adds the effort of another solve.
+  void add_effort(const SolveOutcome& other);
 };
 
 /// Sets a PETSc option unless the user has set it already.
@@ -53,6 +60,12 @@ PetscReal decrease_asked_for(SNES snes);
 /// How a finished SNES went, without outer iterations and factorizations.
 SolveOutcome outcome_of(SNES snes, const Problem& problem);
 
+/// How long steps are: as chosen by the options, or shortened until a merit function falls, the one that suits the
+/// problem.
+struct ChosenSteps {};
+struct MeritSteps {};
+using StepLength = std::variant<ChosenSteps, MeritSteps>;
+
 class Newton {
  public:
   /// Call choose_linear_solver first. `interrupted` is asked at every iteration and must be the same on every rank.
@@ -67,11 +80,22 @@ class Newton {
   /// From the state in `unknowns` (prescribed values already in place) to equilibrium. Collective.
   SolveOutcome solve(Vec unknowns);
 
+  /// For the next solves. The merit function is the energy where there is one whose minimum is sought (symmetric
+  /// tangent, displacements only), by an exact search, for which Newton's method converges from anywhere if the energy
+  /// is convex; |F|² where steps are not shortened otherwise; and |K⁻¹ F|, the natural one (P. Deuflhard, Newton
+  /// Methods for Nonlinear Problems (2004), 3.3), where |F|² is in use already.
+  void set_steps(const StepLength& steps);
+  /// What went on in the last solve, which did not converge. Collective.
+  Trouble trouble() const;
+  const StatusWatch& watch() const { return watch_; }
+
  private:
   static PetscErrorCode evaluate_residual(SNES, Vec unknowns, Vec result, void* self);
   static PetscErrorCode evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, void* self);
   static PetscErrorCode test_convergence(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                          SNESConvergedReason* reason, void* self);
+  static PetscErrorCode search_energy(SNESLineSearch search, void* self);
+  void observe(double norm);
 
   Problem& problem_;
   std::function<bool()> interrupted_;
@@ -80,6 +104,9 @@ class Newton {
       kept_factorization_; // absent unless the problem is large or the options ask for it
   MatHandle matrix_;
   VecHandle residual_;
+  IterationRecord record_; // of the running solve
+  StatusWatch watch_;
+  std::string chosen_search_;
   std::exception_ptr kept_;
   int factorizations_ = 0, least_iterations_ = 0;
   PetscReal sufficient_decrease_ = 0.0; // of a backtracking line search
