@@ -26,7 +26,7 @@ double scene_size(const Mesh& mesh) {
 double softest(const Scene& scene) {
   double stiffness = 1e300;
   for (std::size_t b = 0; b < scene.mesh.bodies.size(); ++b)
-    stiffness = std::min(stiffness, scene.bulk->law(static_cast<std::int32_t>(b)).stiffness());
+    stiffness = std::min(stiffness, scene.bulk->stiffness(static_cast<std::int32_t>(b)));
   return stiffness;
 }
 
@@ -67,7 +67,8 @@ Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<Contac
                                  .friction = deck.friction,
                                  .slip = deck.slip},
                   .force_floor = force_floor,
-                  .energy_floor = rounding_strain * force_floor * size});
+                  .energy_floor = rounding_strain * force_floor * size,
+                  .kinematics = scene.deck.kinematics});
 }
 
 bool CertificateRecord::add(const Certificate& certificate, double time) {

@@ -89,14 +89,19 @@ void describe_groups(std::ostream& out, const RawMesh& raw) {
 }
 
 void describe_effects(std::ostream& out, const Deck& deck) {
-  std::vector<std::string> on = {"linear elasticity"}, off;
+  const bool finite = deck.kinematics == Kinematics::Finite;
+  const bool plastic = std::any_of(deck.materials.begin(), deck.materials.end(), [](const auto& material) {
+    return std::holds_alternative<ElasticPlastic>(material.second.value.law);
+  });
+  std::vector<std::string> on = {finite ? "finite strain" : "linear elasticity"}, off;
+  (plastic ? on : off).push_back("plasticity");
   (deck.contact.empty() ? off : on).push_back("contact");
   (deck.body_force.empty() ? off : on).push_back("body force");
   const bool friction =
       std::any_of(deck.contact.begin(), deck.contact.end(), [](const auto& pair) { return pair.friction.has_value(); });
   (friction ? on : off).push_back("friction");
-  for (const auto* name : {"finite strain", "inertia"})
-    off.push_back(name);
+  if (!finite) off.emplace_back("finite strain");
+  off.emplace_back("inertia");
   out << "  on       " << join_names(on) << "\n  off      " << join_names(off) << "\n";
   for (const auto& contact : deck.contact) {
     const auto* master = std::get_if<Located<std::string>>(&contact.master.value);
@@ -112,8 +117,9 @@ std::string check_report(MPI_Comm comm, const std::string& deck_path) {
   const auto [deck, raw] = read_input(comm, deck_path);
   std::ostringstream out;
   out << deck.path << (deck.title.empty() ? "" : ": " + deck.title) << "\n"
-      << "  space    " << space_text(deck.space) << ", small strains\n"
-      << "  mesh     " << deck.mesh.file.value << ", " << raw.num_cells() << " cells of order " << raw.order;
+      << "  space    " << space_text(deck.space)
+      << (deck.kinematics == Kinematics::Finite ? ", finite strains\n" : ", small strains\n") << "  mesh     "
+      << deck.mesh.file.value << ", " << raw.num_cells() << " cells of order " << raw.order;
   if (deck.mesh.refine > 0) out << ", to be refined " << deck.mesh.refine << " times";
   out << "\n";
   describe_groups(out, raw);

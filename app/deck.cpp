@@ -51,19 +51,18 @@ WordRule<Space> space_rule() {
 
 WordRule<Kinematics> kinematics_rule() {
   WordRule<Kinematics> rule;
-  rule.word("small", Kinematics::Small, "Small strains; contact normals and areas of the reference configuration.")
-      .not_yet("finite", "Use `small` and keep strains and rotations below a few per cent.");
+  rule.word("small", Kinematics::Small,
+            "Small strains and rotations, below a few per cent; contact normals and areas of the reference "
+            "configuration.")
+      .word("finite", Kinematics::Finite,
+            "Strains and rotations of any size: equilibrium of the deformed body. Tractions and body forces are per "
+            "reference area and volume and keep their direction; pressure acts on the deformed surface.");
   return rule;
 }
 
 ObjectRule<MaterialDeck> material_rule() {
-  ObjectRule<ElasticDeck> elastic;
-  elastic.required("E", &ElasticDeck::young, number("stress", Range::above(0)), "Young's modulus.")
-      .required("nu", &ElasticDeck::poisson, number("1", Range::inside(-1, 0.5)), "Poisson's ratio.");
-  TaggedRule<decltype(MaterialDeck::law)> law;
-  law.tag("elastic", elastic, "Linear isotropic elasticity.");
   ObjectRule<MaterialDeck> rule;
-  rule.choice(&MaterialDeck::law, law)
+  rule.choice(&MaterialDeck::law, bulk_material_rule())
       .optional("density", &MaterialDeck::density, number("mass / length^3", Range::at_least(0)),
                 "Mass density; body_force expressions know it as rho.");
   return rule;
@@ -76,7 +75,7 @@ ObjectRule<BoundaryDeck> boundary_rule() {
                 "Prescribed displacement; components that are left out are free.")
       .optional("traction", &BoundaryDeck::traction, components("force / area"), "Force per reference area.")
       .optional("pressure", &BoundaryDeck::pressure, expression("force / area"),
-                "Pressure on the surface; positive pushes into the body.")
+                "Pressure on the surface; positive pushes into the body. In finite kinematics it follows the surface.")
       .optional("resultant", &BoundaryDeck::resultant, components("force"),
                 "Total force on the group, which moves as one in that direction.");
   return rule;

@@ -5,6 +5,7 @@
 #include "base/expression.hpp"
 #include "deck/located.hpp"
 #include "friction/friction_law.hpp"
+#include "material/bulk_material.hpp"
 #include "math/space.hpp"
 
 #include <array>
@@ -24,14 +25,8 @@ struct MeshDeck {
   int refine = 0;
 };
 
-enum class Kinematics { Small };
-
-struct ElasticDeck {
-  double young = 0.0;   // E
-  double poisson = 0.0; // nu
-};
 struct MaterialDeck {
-  std::variant<ElasticDeck> law;
+  BulkMaterial law;
   double density = 0.0; // rho, used by body_force expressions as the constant 'rho' only
 };
 

@@ -90,6 +90,36 @@ void check_bodies(const Check& check) {
   }
 }
 
+/// Materials that the kinematics or the space cannot have.
+void check_materials(const Check& check) {
+  const auto& [deck, root, reading] = check;
+  if (!check.sound("materials") || !check.sound("kinematics") || !check.space_is_known()) return;
+  if (deck.kinematics == Kinematics::Finite && deck.space == Space::PlaneStress)
+    check.fail({"kinematics"}, "kinematics: finite has no plane stress, for no law lets the thickness give way at "
+                               "large strain. Set space: plane_strain, or model the sheet in space: solid.");
+  for (const auto& [name, material] : deck.materials) {
+    const auto path = "materials." + name;
+    if (deck.space == Space::PlaneStress && std::holds_alternative<ElasticPlastic>(material.value.law))
+      reading.fail(material.place, path + ": elastic_plastic has no plane stress, for its flow rule does not let the "
+                                          "thickness give way. Set space: plane_strain, or model the sheet in space: "
+                                          "solid.");
+    if (deck.kinematics == Kinematics::Finite) continue;
+    try {
+      small_law(material.value.law, path);
+    } catch (const UserError& error) {
+      reading.fail(material.place, error.what());
+    }
+  }
+}
+
+/// What finite kinematics cannot be combined with.
+void check_finite(const Check& check) {
+  const auto& [deck, root, reading] = check;
+  if (deck.kinematics != Kinematics::Finite || !check.sound("contact") || deck.contact.empty()) return;
+  check.fail({"contact"}, "contact: with kinematics: finite there is no contact in this release. Set kinematics: small "
+                          "and keep strains and rotations below a few per cent, or leave contact out.");
+}
+
 /// Components that the space does not have.
 void check_space_of_vectors(const Check& check) {
   const auto& [deck, root, reading] = check;
@@ -301,6 +331,8 @@ void check_deck(const Deck& deck, const DeckNode& root, Reading& reading) {
   const Check check{deck, root, reading};
   check_mesh(check);
   check_bodies(check);
+  check_materials(check);
+  check_finite(check);
   check_space_of_vectors(check);
   check_boundary(check);
   check_contact(check);

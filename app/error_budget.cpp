@@ -43,10 +43,11 @@ Json discretization(const BudgetInput& input) {
   const std::chrono::duration<double> taken = Clock::now() - begun;
   Json json = {{"relative", error.relative()}, {"energy_norm", error.error}};
   if (!edge.empty()) json["share_near_contact_edge"] = error.edge_share();
-  json["meaning"] =
-      "error of the stress at the end, by patch recovery (Zienkiewicz and Zhu, 1992), in the energy norm, "
-      "relative to that of the solution; the share is that of its square in cells within a facet of a "
-      "change of status";
+  json["norm"] = scene.bulk->tangent_is_constant() ? "energy" : "stress in L2";
+  json["meaning"] = "error of the stress at the end, by patch recovery (Zienkiewicz and Zhu, 1992), in the given norm, "
+                    "relative to that of the solution; the share is that of its square in cells within a facet of a "
+                    "change of status; stress in L2: of Cauchy's stress over E, an indicator where the material is "
+                    "not linear elastic";
   json["cost"] = cost(taken.count(), input);
   return json;
 }
@@ -83,8 +84,8 @@ Json error_budget(const BudgetInput& input) {
 
 std::string budget_sentence(const Json& budget) {
   const auto& mesh = budget.at("discretization");
-  std::string line =
-      formatted("errors: mesh about %.2g %% in the energy norm", 100 * mesh.at("relative").get<double>());
+  std::string line = formatted("errors: mesh about %.2g %% in %s", 100 * mesh.at("relative").get<double>(),
+                               mesh.at("norm") == "energy" ? "the energy norm" : "the stress (L2)");
   if (mesh.contains("share_near_contact_edge"))
     line += formatted(" (%.0f %% of its square at the edge of contact)",
                       100 * mesh.at("share_near_contact_edge").get<double>());
@@ -96,6 +97,7 @@ std::string budget_sentence(const Json& budget) {
 }
 
 Json audit_effects(const Scene& scene, Vec unknowns) {
+  if (scene.deck.kinematics == Kinematics::Finite) return {{"finite_kinematics", {{"on", true}}}};
   const Phase phase("error estimate");
   const auto state = scene.problem->state_at(unknowns);
   const auto audit = audit_kinematics(scene.mesh, scene.deck.space, state.displacement);
@@ -114,7 +116,7 @@ Json audit_effects(const Scene& scene, Vec unknowns) {
 std::vector<std::string> audit_warnings(const Json& effects) {
   std::vector<std::string> lines;
   for (const auto& [name, effect] : effects.items())
-    if (effect.at("above_threshold").get<bool>())
+    if (effect.value("above_threshold", false))
       lines.push_back(formatted("%s is off, but its indicator is %.2g, above %.2g: see `effects` in the summary",
                                 name.c_str(), effect.at("indicator").get<double>(),
                                 effect.at("threshold").get<double>()));

@@ -127,6 +127,7 @@ void Ledger::accept(Vec unknowns) {
   collect_reactions();
   collect_tied_displacements(unknowns);
   stored_energy_ = scene_.problem->stored_energy(unknowns);
+  bulk_dissipation_ = scene_.bulk_dissipation(unknowns);
 
   double here[5] = {}; // work, ½ Δe·Δu, Σ ½ |Δe·Δu|, e·u, Σ|e·u|
   {
@@ -173,14 +174,16 @@ void Ledger::accept(Vec unknowns) {
     work_uncertainty_ += contact_error + trapezoid_error(unknowns, here[1], here[2]);
   }
   opened_ = true;
-  const double bulk_energy = scene_.bulk_energy(unknowns);
-  virtual_work_defect_ = here[3] - contact_work - 2.0 * bulk_energy;
-  virtual_work_scale_ = here[4] + 2.0 * bulk_energy;
+  const double internal_work = scene_.internal_work(unknowns);
+  virtual_work_defect_ = here[3] - contact_work - internal_work;
+  virtual_work_scale_ = here[4] + std::abs(internal_work);
   AMT_PETSC(VecCopy(external_, external_old_));
   AMT_PETSC(VecCopy(unknowns, unknowns_old_));
 }
 
-double Ledger::dissipated_energy() const { return std::accumulate(dissipated_.begin(), dissipated_.end(), 0.0); }
+double Ledger::dissipated_energy() const {
+  return std::accumulate(dissipated_.begin(), dissipated_.end(), bulk_dissipation_);
+}
 
 void Ledger::save(Checkpoint& checkpoint) const {
   const auto& mesh = scene_.mesh;
@@ -205,6 +208,7 @@ void Ledger::restore(const Checkpoint& checkpoint, Vec unknowns) {
   external_work_ = work.at(0);
   work_uncertainty_ = work.at(1);
   stored_energy_ = work.at(2);
+  bulk_dissipation_ = scene_.bulk_dissipation(unknowns);
   dissipated_ = checkpoint.global.at("dissipated");
   const auto& rigid = checkpoint.global.at("rigid_masters");
   for (std::size_t i = 0; i < rigid_force_old_.size(); ++i) {

@@ -33,11 +33,11 @@ class Ledger {
   /// EnergyLedger::work_uncertainty.
   double work_uncertainty() const { return work_uncertainty_; }
   double stored_energy() const { return stored_energy_; }
-  /// Frictional dissipation since the start, of all pairs and of each.
+  /// Dissipation since the start: of all pairs by friction and of the bodies by their materials; of each pair.
   double dissipated_energy() const;
   const std::vector<double>& dissipated_by_pair() const { return dissipated_; }
-  /// e · u − ∫ (σ (g − g0) + σ_t · u) − 2 U at the state: zero for a linear elastic body in equilibrium; and its scale
-  /// |e · u| + 2 U.
+  /// e · u − ∫ (σ (g − g0) + σ_t · u) − W at the state, W the work of the stresses on the displacement
+  /// (SolidForm::internal_work): zero in equilibrium; and its scale |e · u| + |W|.
   double virtual_work_defect() const { return virtual_work_defect_; }
   double virtual_work_scale() const { return virtual_work_scale_; }
   /// Applied loads and support reactions by node: num_local x dim, this rank's parts. Collective.
@@ -64,7 +64,7 @@ class Ledger {
   Scene& scene_;
   VecHandle external_, external_old_, unknowns_old_, work_;
   std::vector<std::array<double, 3>> rigid_force_old_, rigid_shift_old_;
-  double external_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0;
+  double external_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0, bulk_dissipation_ = 0.0;
   std::vector<double> dissipated_;
   double virtual_work_defect_ = 0.0, virtual_work_scale_ = 0.0;
   LoadedBubbles bubbles_old_;

@@ -113,7 +113,7 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
   NodalStress recovered;
   std::vector<double> mises;
   if (wants_field(scene, "stress")) {
-    recovered = scene.bulk->nodal_stress(state);
+    recovered = nodal_stress(*scene.bulk, scene.mesh, state);
     const std::size_t components = scene.mesh.dim == 2 ? strain_size<2> : strain_size<3>;
     for (std::size_t at = 0; at < recovered.stress.size(); at += components) {
       mises.push_back(von_mises(std::span(recovered.stress).subspan(at, components)));
@@ -124,6 +124,9 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
     step.nodal.push_back({.name = "stress", .kind = FieldKind::SymmetricTensor, .values = recovered.stress});
     step.nodal.push_back({.name = "strain", .kind = FieldKind::SymmetricTensor, .values = recovered.strain});
     step.nodal.push_back({.name = "von_mises", .kind = FieldKind::Scalar, .values = mises});
+    const auto names = scene.bulk->scalar_names();
+    for (std::size_t k = 0; k < names.size(); ++k)
+      step.nodal.push_back({.name = names[k], .kind = FieldKind::Scalar, .values = recovered.scalars[k]});
   }
   if (wants_field(scene, "contact"))
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -216,7 +219,8 @@ nlohmann::ordered_json describe_scene(const Scene& scene) {
   effects["contact"] = !scene.contacts.empty();
   effects["friction"] = std::any_of(scene.contacts.begin(), scene.contacts.end(),
                                     [](const auto* contact) { return contact->tangential() != nullptr; });
-  effects["finite_kinematics"] = false;
+  effects["finite_kinematics"] = scene.deck.kinematics == Kinematics::Finite;
+  effects["nonlinear_materials"] = !scene.bulk->tangent_is_constant();
   effects["inertia"] = false;
   effects["unknown_multipliers"] = scene.layout->num_extra() > 0;
   effects["outer_loop"] = scene.multipliers != nullptr;

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "deck/rule.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -125,10 +126,11 @@ std::string run_identity(const Scene& scene) {
   std::string identity;
   for (const auto& [body, material] : scene.deck.bodies)
     identity += body + "=" + material.value + ";";
-  for (const auto& law : scene.mesh.bodies)
-    identity += law + ";";
-  for (std::size_t b = 0; b < scene.mesh.bodies.size(); ++b)
-    identity += formatted("%.17g;", scene.bulk->law(static_cast<std::int32_t>(b)).stiffness());
+  for (const auto& body : scene.mesh.bodies) {
+    const auto& material = scene.deck.materials.at(scene.deck.bodies.at(body).value).value;
+    identity += body + ":" + bulk_material_rule().show(material.law) + ";";
+  }
+  identity += scene.deck.kinematics == Kinematics::Finite ? "finite;" : "small;";
   for (const auto* contact : scene.contacts)
     identity += contact->pair().name + ":" + contact->pair().slave + ":" + enforcement_text(contact->pair()) + ";";
   return identity;

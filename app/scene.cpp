@@ -2,9 +2,10 @@
 
 #include "base/error.hpp"
 #include "base/timer.hpp"
+#include "form/bulk.hpp"
+#include "form/finite_bulk.hpp"
 #include "form/support.hpp"
 #include "geometry/box_tree.hpp"
-#include "material/elastic.hpp"
 #include "validate.hpp"
 
 #include <algorithm>
@@ -21,17 +22,28 @@ struct Overloaded : Cases... {
 template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
-std::vector<BulkLawPtr> body_laws(const Deck& deck, const Mesh& mesh) {
-  std::vector<BulkLawPtr> laws;
-  for (const auto& body : mesh.bodies) {
-    const auto& material = deck.materials.at(deck.bodies.at(body).value).value;
-    laws.push_back(std::visit(Overloaded{[&](const ElasticDeck& elastic) {
-                                return make_law(Elastic{.young = elastic.young, .poisson = elastic.poisson},
-                                                deck.space);
-                              }},
-                              material.law));
+const BulkMaterial& material_of(const Deck& deck, const std::string& body) {
+  return deck.materials.at(deck.bodies.at(body).value).value.law;
+}
+
+/// The form of the deck's kinematics, with a law for each body. Collective.
+std::unique_ptr<SolidForm> make_solid(const Deck& deck, const DofLayout& layout, std::vector<BodyLoad> body_loads) {
+  const auto& bodies = layout.mesh().bodies;
+  if (deck.kinematics == Kinematics::Finite) {
+    std::vector<FiniteLaw> laws;
+    for (const auto& body : bodies)
+      laws.push_back(finite_law(material_of(deck, body)));
+    return std::make_unique<FiniteBulkForm>(layout, deck.space, std::move(laws));
   }
-  return laws;
+  std::vector<BulkLawPtr> laws;
+  for (const auto& body : bodies)
+    laws.push_back(make_law(std::get<Elastic>(small_law(material_of(deck, body), body)), deck.space));
+  return std::make_unique<BulkForm>(layout, deck.space, std::move(laws), std::move(body_loads));
+}
+
+double sum_over_ranks(MPI_Comm comm, double mine) {
+  MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_DOUBLE, MPI_SUM, comm);
+  return mine;
 }
 
 /// Diagonal of the box around a surface, over all ranks. Collective.
@@ -87,7 +99,7 @@ std::variant<std::string, RigidMaster> make_master(const MasterDeck& master) {
 }
 
 /// The contact pairs, with an extra field of unknowns for each that wants one.
-std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const std::vector<BulkLawPtr>& laws,
+std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const std::vector<double>& stiffness,
                                     const std::vector<std::uint8_t>& floating, std::vector<NodeField>& fields) {
   std::vector<ContactPair> pairs;
   for (const auto& declared : deck.contact) {
@@ -132,8 +144,7 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
       if (!declared.search_distance)
         pair.search_distance = std::min(pair.search_distance, 0.1 * surface_diagonal(mesh, *master));
     }
-    for (const auto& law : laws)
-      pair.stiffness.push_back(law->stiffness());
+    pair.stiffness = stiffness;
     pairs.push_back(std::move(pair));
   }
   return pairs;
@@ -191,9 +202,15 @@ void check_friction_factors(const Deck& deck, const Mesh& mesh) {
 } // namespace
 
 double Scene::bulk_energy(Vec unknowns) const {
-  double energy = bulk->stored_energy(problem->state_at(unknowns));
-  MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, mesh.comm);
-  return energy;
+  return sum_over_ranks(mesh.comm, bulk->stored_energy(problem->state_at(unknowns)));
+}
+
+double Scene::bulk_dissipation(Vec unknowns) const {
+  return sum_over_ranks(mesh.comm, bulk->dissipated_energy(problem->state_at(unknowns)));
+}
+
+double Scene::internal_work(Vec unknowns) const {
+  return sum_over_ranks(mesh.comm, bulk->internal_work(problem->state_at(unknowns)));
 }
 
 std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) {
@@ -209,20 +226,19 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
   const Phase phase("set up");
   check_friction_factors(deck, mesh);
   auto conditions = make_conditions(deck);
-  const auto laws = body_laws(deck, mesh);
   const auto floating = find_floating_bodies(mesh, conditions.prescribed, deck.space == Space::Axisymmetric);
   std::vector<double> stiffness;
   for (std::size_t b = 0; b < mesh.bodies.size(); ++b) {
-    stiffness.push_back(laws[b]->stiffness());
+    stiffness.push_back(initial_stiffness(material_of(deck, mesh.bodies[b])));
     if (floating[b]) scene->floating.push_back(mesh.bodies[b]);
   }
   std::vector<NodeField> fields;
-  auto pairs = make_pairs(deck, mesh, laws, floating, fields);
+  auto pairs = make_pairs(deck, mesh, stiffness, floating, fields);
   scene->layout = std::make_unique<DofLayout>(mesh, conditions.tied, fields);
   const auto& layout = *scene->layout;
 
   std::vector<std::unique_ptr<Form>> forms;
-  auto bulk = std::make_unique<BulkForm>(layout, deck.space, laws, conditions.body);
+  auto bulk = make_solid(deck, layout, conditions.body);
   scene->bulk = bulk.get();
   forms.push_back(std::move(bulk));
   if (!conditions.surface.empty() || !conditions.body.empty() || !conditions.resultants.empty()) {

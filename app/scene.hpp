@@ -5,9 +5,9 @@
 #include "contact/mortar_transform.hpp"
 #include "contact/uzawa_multipliers.hpp"
 #include "deck.hpp"
-#include "form/bulk.hpp"
 #include "form/loads.hpp"
 #include "form/problem.hpp"
+#include "form/solid.hpp"
 #include "mesh/mesh.hpp"
 
 #include <memory>
@@ -22,15 +22,19 @@ struct Scene {
   Mesh mesh;
   std::unique_ptr<DofLayout> layout;
   std::unique_ptr<Problem> problem;
-  BulkForm* bulk = nullptr;                      // owned by the problem
+  SolidForm* bulk = nullptr;                     // owned by the problem
   LoadForm* loads = nullptr;                     // absent without loads
   std::vector<PairReport*> contacts;             // owned by the problem
   std::unique_ptr<UzawaMultipliers> multipliers; // absent without `uzawa` pairs
   std::unique_ptr<MortarTransform> bounds;       // absent without `vi` pairs
   std::vector<std::string> floating;             // bodies held by contact alone
 
-  /// Strain energy of all bodies. Collective.
+  /// Energy stored in all bodies. Collective.
   double bulk_energy(Vec unknowns) const;
+  /// Energy that their materials have dissipated since the start. Collective.
+  double bulk_dissipation(Vec unknowns) const;
+  /// SolidForm::internal_work of all bodies. Collective.
+  double internal_work(Vec unknowns) const;
 };
 
 /// Reads the deck and the mesh, checks both, distributes and sets up. Throws UserError with everything that is wrong,

@@ -95,6 +95,8 @@ BalanceChecks check_balance(const CertificateInput& input, const std::array<doub
   for (std::int32_t node = 0; node < mesh.num_local(); ++node) {
     std::array<double, 3> x{}, f{};
     std::copy_n(mesh.position(node).begin(), mesh.dim, x.begin());
+    for (int c = 0; c < mesh.dim && input.kinematics == Kinematics::Finite; ++c)
+      x[c] += input.displacement[std::size_t(node) * mesh.dim + c];
     std::copy_n(input.external_forces.begin() + std::ptrdiff_t(node) * mesh.dim, mesh.dim, f.begin());
     if (f == std::array<double, 3>{}) continue;
     absolute += std::hypot(f[0], f[1], f[2]);

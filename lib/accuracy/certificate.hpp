@@ -1,6 +1,6 @@
 // The certificate of an accepted increment: whether the contact conditions, the balances and the energy bounds really
 // hold. It searches the surfaces afresh and shares nothing with the solver but the mesh, its shape functions and
-// lib/geometry; it reads what the solver claims as plain data. Small kinematics.
+// lib/geometry; it reads what the solver claims as plain data.
 #pragma once
 
 #include "contact/contact_samples.hpp"
@@ -30,7 +30,7 @@ struct EnergyLedger {
   /// Σ potential of all forms: strain energy of the bodies and the potential (σ² − λ²) / (2 ε) of the contact, normal
   /// and tangential.
   double stored = 0.0;
-  /// Frictional dissipation: Σ over increments of ∫ shear traction · slip.
+  /// Frictional dissipation, Σ over increments of ∫ shear traction · slip, and what the materials have dissipated.
   double dissipated = 0.0;
   /// Σ ½ (f_old + f) · Δu over supports, loads and moving rigid masters.
   double external_work = 0.0;
@@ -47,8 +47,10 @@ struct EnergyLedger {
   /// energy item of the certificate holds what remains beyond it to the tolerance. Where a body is not linear elastic
   /// the first part is Σ ½ |Δf · Δu| over the equations.
   double work_uncertainty = 0.0;
-  /// f · u + Σ over slave points of pressure · n · (u_slave − u_master) − 2 · (strain energy), now: zero for linear
-  /// elastic bodies in equilibrium. And the sum of the absolute values of the terms.
+  /// f · u + Σ over slave points of pressure · n · (u_slave − u_master) − ∫ stress : displacement gradient, now: the
+  /// principle of virtual work with the displacement itself, zero in equilibrium whatever the material. (P : (F − 1)
+  /// per reference volume; for linear elastic bodies twice the strain energy.) And the sum of the absolute values of
+  /// the terms.
   double virtual_work_defect = 0.0;
   double virtual_work_scale = 0.0;
 };
@@ -70,6 +72,8 @@ struct CertificateInput {
   /// Forces and energies below these are rounding (an unloaded scene has nothing else): lower limits of the scales.
   double force_floor = 0.0;
   double energy_floor = 0.0;
+  /// Finite: forces act at the deformed places, which moments are taken of.
+  Kinematics kinematics = Kinematics::Small;
 };
 
 struct Certificate {

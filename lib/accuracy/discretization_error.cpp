@@ -166,12 +166,12 @@ double DiscretizationError::relative() const { return error > 0.0 ? error / std:
 
 double DiscretizationError::edge_share() const { return error > 0.0 ? std::pow(near_edge / error, 2) : 0.0; }
 
-DiscretizationError estimate_discretization_error(BulkForm& solid, const Mesh& mesh, const State& state,
+DiscretizationError estimate_discretization_error(SolidForm& solid, const Mesh& mesh, const State& state,
                                                   std::span<const ContactEdgePoint> edge) {
   const PatchRecovery recovery(solid, mesh, state);
   EdgeRegion region(edge);
   std::array<double, 3> sums{}; // squares of error, near_edge, solution
-  solid.for_each_batch(state, [&](const PointBatch& batch) {
+  accuracy::each_weighed_batch(solid, state, [&](const PointBatch& batch) {
     const ErrorRule rule = error_rule(*batch.table);
     for (std::int32_t c = 0; c < batch.num_cells; ++c) {
       const auto [error, solution] = squares(recovery, rule, mesh, batch, c);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "contact/contact_samples.hpp"
-#include "form/bulk.hpp"
+#include "form/solid.hpp"
 
 #include <array>
 #include <span>
@@ -42,8 +42,10 @@ struct DiscretizationError {
 /// 37, 1994). What it differs from the computed field is of the size of the error, which is of order p, and tends to it
 /// where the solution is smooth. Patches never reach across contact or from one body to another. At edges of contact
 /// and corners, where derivatives are not bounded, it tells where the error is, but only roughly how large.
+/// Of solids that are not linear elastic it is the error of (Cauchy's) stress in L2, ∫ Δσ : Δσ / E over the reference
+/// volume; for them the order of the best points is not proven, so there it is an indicator rather than an estimate.
 /// Zero where the exact stress is a polynomial of order p that the elements reproduce. Collective.
-DiscretizationError estimate_discretization_error(BulkForm& solid, const Mesh& mesh, const State& state,
+DiscretizationError estimate_discretization_error(SolidForm& solid, const Mesh& mesh, const State& state,
                                                   std::span<const ContactEdgePoint> edge);
 
 } // namespace amontons

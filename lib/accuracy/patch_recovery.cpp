@@ -73,6 +73,21 @@ Eigen::MatrixXd point_places(const Mesh& mesh, const PointBatch& batch, std::int
   return places;
 }
 
+void each_weighed_batch(SolidForm& solid, const State& state, const std::function<void(const PointBatch&)>& visit) {
+  if (solid.tangent_is_constant()) return solid.for_each_batch(state, visit);
+  const std::size_t components = space_dim(solid.space()) == 2 ? strain_size<2> : strain_size<3>;
+  std::vector<double> strain;
+  solid.for_each_batch(state, [&](const PointBatch& batch) {
+    const double modulus = solid.stiffness(batch.block->body);
+    strain.assign(batch.stress.begin(), batch.stress.end());
+    for (std::size_t i = 0; i < strain.size(); ++i)
+      strain[i] *= (i % components < 3 ? 1.0 : 2.0) / modulus;
+    PointBatch weighed = batch;
+    weighed.strain = strain;
+    visit(weighed);
+  });
+}
+
 Eigen::MatrixXd point_fields(const PointBatch& batch, std::int32_t c) {
   const int points = batch.table->rule->size();
   const auto components = static_cast<int>(batch.strain.size() / batch.weights.size());
@@ -84,12 +99,12 @@ Eigen::MatrixXd point_fields(const PointBatch& batch, std::int32_t c) {
   return fields;
 }
 
-PatchRecovery::PatchRecovery(BulkForm& solid, const Mesh& mesh, const State& state)
+PatchRecovery::PatchRecovery(SolidForm& solid, const Mesh& mesh, const State& state)
     : mesh_(mesh), terms_(num_terms(mesh.dim, mesh.order)),
       fields_(2 * (mesh.dim == 2 ? strain_size<2> : strain_size<3>)),
       stride_(std::size_t(terms_) * (terms_ + 1) / 2 + std::size_t(terms_) * fields_ + 1) {
   number_patches();
-  solid.for_each_batch(state, [this](const PointBatch& batch) { add_cells(batch); });
+  each_weighed_batch(solid, state, [this](const PointBatch& batch) { add_cells(batch); });
   add_boundary();
   sum_over_ranks();
   fit();

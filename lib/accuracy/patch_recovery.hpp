@@ -1,7 +1,7 @@
 // Polynomials fitted to fields around the corner nodes of a mesh, and their blend inside cells. For lib/accuracy only.
 #pragma once
 
-#include "form/bulk.hpp"
+#include "form/solid.hpp"
 
 #include <Eigen/Core>
 #include <vector>
@@ -13,6 +13,11 @@ int num_terms(int dim, int order);
 
 /// Coordinates of the batch's points in cell `c`, one a row.
 Eigen::MatrixXd point_places(const Mesh& mesh, const PointBatch& batch, std::int32_t c);
+/// SolidForm::for_each_batch with the strains that errors are weighed by: those of a linear elastic solid. Otherwise no
+/// strain belongs to a stress alone, and stress / E stands in for it, E the virgin Young's modulus, so that errors are
+/// those of the stress in L2.
+void each_weighed_batch(SolidForm& solid, const State& state, const std::function<void(const PointBatch&)>& visit);
+
 /// Strain and stress at the points of cell `c`, side by side, one point a row.
 Eigen::MatrixXd point_fields(const PointBatch& batch, std::int32_t c);
 
@@ -20,7 +25,7 @@ Eigen::MatrixXd point_fields(const PointBatch& batch, std::int32_t c);
 class PatchRecovery {
  public:
   /// Collective.
-  PatchRecovery(BulkForm& solid, const Mesh& mesh, const State& state);
+  PatchRecovery(SolidForm& solid, const Mesh& mesh, const State& state);
 
   /// Recovered strain and stress, one place a row as in point_fields, at `places` of cell `c`, where `corners` are the
   /// values of the cell's functions of order 1 (places x corners).

@@ -6,6 +6,7 @@
 
 #include <any>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace amontons {
@@ -32,6 +33,13 @@ class Residual {
     AMT_PETSC(
         VecSetValues(global_, static_cast<PetscInt>(equations.size()), equations.data(), values.data(), ADD_VALUES));
   }
+  /// Says that there is no residual at this state and why, as the end of a sentence ("in body 'tube' det F is not
+  /// positive"): a return value and never an exception, for the other ranks go on. The increment is then cut back.
+  void fail(const std::string& reason) {
+    if (failure_.empty()) failure_ = reason;
+  }
+  /// The first reason given on this rank; empty: none.
+  const std::string& failure() const { return failure_; }
   /// Sums everything up in the global vector. Collective.
   void finish() {
     AMT_PETSC(VecAssemblyBegin(global_));
@@ -43,6 +51,7 @@ class Residual {
   const DofLayout& layout_;
   Vec global_;
   std::vector<double> nodal_;
+  std::string failure_;
 };
 
 /// Tangent under assembly. Rows and columns of prescribed equations are dropped by the Problem that owns the matrix.

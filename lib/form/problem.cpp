@@ -46,6 +46,19 @@ class Problem::MatrixTangent : public Tangent {
   double diagonal_sum_ = 0.0;
 };
 
+/// Adds up the diagonal only.
+class Problem::DiagonalTangent : public Tangent {
+ public:
+  explicit DiagonalTangent(Vec diagonal) : diagonal_(diagonal) {}
+  void add(std::span<const PetscInt> equations, std::span<const double> block) override {
+    for (std::size_t i = 0; i < equations.size(); ++i)
+      AMT_PETSC(VecSetValue(diagonal_, equations[i], block[i * (equations.size() + 1)], ADD_VALUES));
+  }
+
+ private:
+  Vec diagonal_;
+};
+
 Problem::Problem(const DofLayout& layout, std::vector<std::unique_ptr<Form>> forms,
                  std::vector<PrescribedDisplacement> prescribed)
     : layout_(layout), forms_(std::move(forms)), prescribed_(std::move(prescribed)), raw_(layout.new_vector()),
@@ -151,7 +164,22 @@ void Problem::estimate_rounding(Vec unknowns) {
   rounding_ *= rounding_factor * PETSC_MACHINE_EPSILON;
 }
 
-void Problem::residual(Vec unknowns, Vec result) {
+/// The reason of the first rank that has one, told to all.
+void Problem::share_failure(const std::string& mine) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(comm(), &rank);
+  MPI_Comm_size(comm(), &ranks);
+  int first = mine.empty() ? ranks : rank;
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm());
+  failure_ = mine;
+  if (first == ranks) return;
+  auto size = static_cast<int>(mine.size());
+  MPI_Bcast(&size, 1, MPI_INT, first, comm());
+  failure_.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(failure_.data(), size, MPI_CHAR, first, comm());
+}
+
+bool Problem::residual(Vec unknowns, Vec result) {
   estimate_rounding(unknowns);
   const auto state = state_at(unknowns);
   AMT_PETSC(VecSet(raw_, 0.0));
@@ -168,7 +196,9 @@ void Problem::residual(Vec unknowns, Vec result) {
   for (const double square : squares)
     largest = std::max(largest, square);
   residual.finish();
+  share_failure(residual.failure());
   AMT_PETSC(VecCopy(raw_, result));
+  if (!failure_.empty()) return false;
   {
     VecArray values(result);
     for (const PetscInt equation : prescribed_equations_)
@@ -177,6 +207,7 @@ void Problem::residual(Vec unknowns, Vec result) {
   double norm = 0.0;
   AMT_PETSC(VecNorm(raw_, NORM_2, &norm));
   force_scale_ = std::max({std::sqrt(largest), norm, unloaded_ratio * largest_accepted_force_});
+  return true;
 }
 
 MatHandle Problem::new_matrix() {
@@ -232,6 +263,18 @@ void Problem::add_changing(const State& state, Mat matrix) {
   AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
 }
 
+/// Takes the diagonal of the whole tangent, in problems without a constant part; returns the sum of absolute values.
+double Problem::probe_diagonal(const State& state) {
+  DiagonalTangent tangent(diagonal_);
+  for (const auto& form : forms_)
+    form->add_tangent(state, tangent);
+  AMT_PETSC(VecAssemblyBegin(diagonal_));
+  AMT_PETSC(VecAssemblyEnd(diagonal_));
+  double sum = 0.0;
+  AMT_PETSC(VecNorm(diagonal_, NORM_1, &sum));
+  return sum;
+}
+
 /// The constant part with the whole pattern in place, kept inside the matrix (MatStoreValues) for later tangents. One
 /// assembly for all: PETSc gives preallocated places away that an assembly finds unused.
 void Problem::assemble_constant(const State& state, Mat matrix) {
@@ -246,6 +289,10 @@ void Problem::assemble_constant(const State& state, Mat matrix) {
   // Prescribed and idle equations get the mean diagonal, so that they spoil neither conditioning nor scaling.
   double mean = tangent.diagonal_sum();
   MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPI_DOUBLE, MPI_SUM, comm());
+  diagonal_ = layout_.new_vector();
+  scratch_ = layout_.new_vector();
+  const bool has_constant = mean > 0.0;
+  if (!has_constant) mean = probe_diagonal(state);
   mean = mean > 0.0 ? mean / static_cast<double>(layout_.num_global()) : 1.0;
   for (const auto& equations : {std::span<const PetscInt>(prescribed_equations_), std::span(layout_.idle_equations())})
     for (const PetscInt equation : equations)
@@ -270,9 +317,7 @@ void Problem::assemble_constant(const State& state, Mat matrix) {
   AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_FALSE));
   AMT_PETSC(MatStoreValues(matrix));
-  diagonal_ = layout_.new_vector();
-  scratch_ = layout_.new_vector();
-  AMT_PETSC(MatGetDiagonal(matrix, diagonal_));
+  if (has_constant) AMT_PETSC(MatGetDiagonal(matrix, diagonal_));
   constant_ready_ = true;
 }
 

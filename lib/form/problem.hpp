@@ -63,8 +63,11 @@ class Problem {
   /// Is the next tangent the first of its increment? Forms then guess, and it need not be the residual's derivative.
   bool is_first_guess() const { return first_guess_; }
 
-  /// Out-of-balance forces; zero in the equations of prescribed displacements. Collective.
-  void residual(Vec unknowns, Vec result);
+  /// Out-of-balance forces; zero in the equations of prescribed displacements. False, the same on every rank, where a
+  /// form has no residual: `result` is then of no use, and failure() says why. Collective.
+  bool residual(Vec unknowns, Vec result);
+  /// Why the last residual could not be evaluated, as the end of a sentence; empty when it could. Same on every rank.
+  const std::string& failure() const { return failure_; }
   /// The last residual with the reactions of the supports, in the equations of prescribed displacements.
   Vec raw_residual() const { return raw_; }
   /// Norm of the forces that met in the last residual (internal, contact, loads, reactions): what an out-of-balance
@@ -72,8 +75,8 @@ class Problem {
   double force_scale() const { return force_scale_; }
 
   /// What of the last residual may be rounding: some machine epsilons times the norm of (diagonal of the constant
-  /// tangent x unknowns). A stiff body moved by a soft one has internal forces that cancel far more than the load. Zero
-  /// before the first tangent. Same on every rank.
+  /// tangent x unknowns), or of the first tangent where no part is constant. A stiff body moved by a soft one has
+  /// internal forces that cancel far more than the load. Zero before the first tangent. Same on every rank.
   double rounding() const { return rounding_; }
 
   /// A matrix for the tangent. Collective.
@@ -89,11 +92,14 @@ class Problem {
 
  private:
   class MatrixTangent;
+  class DiagonalTangent;
   void find_prescribed();
   void estimate_rounding(Vec unknowns);
   void build_pattern(Mat matrix);
+  double probe_diagonal(const State& state);
   void assemble_constant(const State& state, Mat matrix);
   bool any_rank(bool mine) const;
+  void share_failure(const std::string& mine);
   void add_changing(const State& state, Mat matrix);
 
   const DofLayout& layout_;
@@ -105,9 +111,10 @@ class Problem {
   VecHandle raw_;
   std::vector<double> displacement_;
   double time_ = 0.0, accepted_time_ = 0.0;
-  VecHandle diagonal_, scratch_; // of the constant tangent
+  VecHandle diagonal_, scratch_; // of the constant tangent, or where there is none of the first one
   double rounding_ = 0.0;
   double force_scale_ = 0.0, largest_accepted_force_ = 0.0;
+  std::string failure_;
   bool first_guess_ = false;
   bool constant_ready_ = false, tangent_ready_ = false;
 };

@@ -34,6 +34,11 @@ SmallLaw small_law(const BulkMaterial& material, const std::string& name) {
 
 FiniteLaw finite_law(const BulkMaterial& material) { return std::visit(FiniteLawOf{}, material); }
 
+double initial_stiffness(const BulkMaterial& material) {
+  const auto [lambda, G] = initial_lame(finite_law(material));
+  return G * (3 * lambda + 2 * G) / (lambda + G);
+}
+
 Rule<BulkMaterial> bulk_material_rule() {
   return TaggedRule<BulkMaterial>()
       .tag("elastic", elastic_rule<Elastic>(std::identity()),

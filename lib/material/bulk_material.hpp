@@ -15,6 +15,9 @@ SmallLaw small_law(const BulkMaterial& material, const std::string& name);
 /// The law for finite strain; `elastic` becomes Hencky.
 FiniteLaw finite_law(const BulkMaterial& material);
 
+/// Young's modulus at zero strain, unit of stress, for scales.
+double initial_stiffness(const BulkMaterial& material);
+
 /// `{elastic: {E: 210e3, nu: 0.3}}` and so on: reads, checks and documents any material.
 Rule<BulkMaterial> bulk_material_rule();
 

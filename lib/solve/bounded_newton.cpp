@@ -116,7 +116,7 @@ void BoundedNewton::transform_tangent() {
 /// Tᵀ r(T û).
 void BoundedNewton::find_residual(Vec changed, Vec result) {
   AMT_PETSC(MatMult(bounds_.transform(), changed, unknowns_));
-  problem_.residual(unknowns_, residual_);
+  evaluate_in_domain(snes_, problem_, unknowns_, residual_);
   AMT_PETSC(MatMultTranspose(variation_, residual_, result));
 }
 

@@ -96,6 +96,13 @@ NullSpaceHandle rigid_body_modes(const DofLayout& layout) {
   return modes;
 }
 
+void evaluate_in_domain(SNES snes, Problem& problem, Vec unknowns, Vec result) {
+  if (problem.residual(unknowns, result)) return;
+  // Both: SNES looks for the reason where the norm is not finite.
+  AMT_PETSC(VecSet(result, PETSC_INFINITY));
+  AMT_PETSC(SNESSetFunctionDomainError(snes));
+}
+
 SNESConvergedReason judge_residual(SNES snes, const Problem& problem, PetscInt iteration, double norm) {
   PetscReal rtol = 0.0;
   PetscInt max_iterations = 0;
@@ -120,6 +127,7 @@ SolveOutcome outcome_of(SNES snes, const Problem& problem) {
   const double scale = problem.force_scale();
   outcome.residual = scale > 0.0 ? norm / scale : 0.0;
   outcome.reason = outcome.converged ? "converged" : in_words(reason, outcome.residual);
+  if (!outcome.converged && !problem.failure().empty()) outcome.reason = problem.failure();
   return outcome;
 }
 
@@ -148,7 +156,7 @@ void Newton::ask_for_decrease(bool is_asked) {
 
 PetscErrorCode Newton::evaluate_residual(SNES, Vec unknowns, Vec result, void* self) {
   auto& newton = *static_cast<Newton*>(self);
-  return guarded(newton.kept_, [&] { newton.problem_.residual(unknowns, result); });
+  return guarded(newton.kept_, [&] { evaluate_in_domain(newton.snes_, newton.problem_, unknowns, result); });
 }
 
 PetscErrorCode Newton::evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, void* self) {

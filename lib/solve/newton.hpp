@@ -32,6 +32,9 @@ std::string choose_linear_solver(const Problem& problem);
 /// Rigid-body modes, which multigrid needs to coarsen elasticity well. Collective.
 NullSpaceHandle rigid_body_modes(const DofLayout& layout);
 
+/// The residual, or where there is none a domain error of the SNES, which ends the solve. Collective.
+void evaluate_in_domain(SNES snes, Problem& problem, Vec unknowns, Vec result);
+
 /// Whether to go on at a residual of this norm: converged when it is small (snes_rtol) against the forces that are
 /// balanced, which, unlike the first residual of an increment, do not become small when the guess is good.
 SNESConvergedReason judge_residual(SNES snes, const Problem& problem, PetscInt iteration, double norm);
