@@ -35,11 +35,6 @@ bool any_of_all(MPI_Comm comm, bool mine) {
 
 } // namespace
 
-struct ContactForm::Group {
-  std::size_t begin, end; // of points
-  std::int32_t facet, master;
-};
-
 NodeField multiplier_nodes(const Mesh& mesh, const std::string& pair, const std::string& slave) {
   NodeField field{.name = pair, .nodes = {}};
   for (const auto node : mesh.node_groups.at(slave))
@@ -95,8 +90,11 @@ std::vector<ContactForm::Group> ContactForm::groups() const {
   std::vector<Group> all;
   const auto& points = points_.points();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (all.empty() || all.back().facet != points[i].facet || all.back().master != points[i].master)
-      all.push_back({i, i, points[i].facet, points[i].master});
+    const std::int32_t old =
+        tangential_ && tangential_->path() ? tangential_->path()->old_facet(i) : ContactPoint::none;
+    if (all.empty() || all.back().facet != points[i].facet || all.back().master != points[i].master ||
+        all.back().old_master != old)
+      all.push_back({i, i, points[i].facet, points[i].master, old});
     all.back().end = i + 1;
   }
   return all;
@@ -106,7 +104,7 @@ std::vector<ContactForm::Group> ContactForm::groups() const {
 // --------------------------------------------------------------------------------------------------
 
 double ContactForm::gap_at(const ContactPoint& point, const State& state) const {
-  if (point.master == ContactPoint::none) return 1e300;
+  if (point.master == ContactPoint::none || points_.is_following()) return point.gap0;
   const auto jump = points_.displacement_jump(point, state); // a rigid master's motion is in gap0
   return point.gap0 + point.normal[0] * jump[0] + point.normal[1] * jump[1] + point.normal[2] * jump[2];
 }
@@ -135,7 +133,10 @@ void ContactForm::evaluate(const State& state) {
     points_.move_rigid_master(state.time);
     rigid_time_ = state.time;
   }
-  if (points_.master()) points_.master()->refresh(state.unknowns);
+  if (points_.is_following())
+    points_.follow(state);
+  else if (points_.master())
+    points_.master()->refresh(state.unknowns);
   fetch_multipliers(state);
   const bool has_multipliers = !std::holds_alternative<Penalty>(pair_.enforcement);
   const auto& points = points_.points();
@@ -182,26 +183,31 @@ bool ContactForm::coupled(const Group& group) const {
 }
 
 void ContactForm::couple_near() {
+  if (points_.is_following()) return couple_near_now();
   const auto& points = points_.points();
   for (std::size_t i = 0; i < points.size(); ++i)
     if (active_[i] || (points[i].master >= 0 && gap_[i] < coupling_reach * points[i].size)) coupled_[i] = 1;
 }
 
-/// Slave displacements, then unknown multipliers (normal, then tangential), then master displacements where the group
-/// is coupled.
-void ContactForm::gather_equations(const Group& group, std::vector<PetscInt>& equations) const {
+/// Slave displacements, then unknown multipliers (normal, then tangential).
+void ContactForm::gather_slave_equations(std::int32_t facet, std::vector<PetscInt>& equations) const {
   const int d = layout_.dim();
   equations.clear();
-  const auto nodes = points_.slave().facet(group.facet);
+  const auto nodes = points_.slave().facet(facet);
   for (const auto node : nodes)
     for (int c = 0; c < d; ++c)
       equations.push_back(layout_.equation(node, c));
   if (is_unknown()) {
     const int field = std::get<Semismooth>(pair_.enforcement).field;
-    for (int a = 0; a < num_vertices(points_.slave().types[group.facet]); ++a)
+    for (int a = 0; a < num_vertices(points_.slave().types[facet]); ++a)
       equations.push_back(layout_.extra_equation(field, nodes[a]));
   }
-  if (tangential_) tangential_->gather_multiplier_equations(group.facet, equations);
+  if (tangential_) tangential_->gather_multiplier_equations(facet, equations);
+}
+
+/// Those of the slave, then master displacements where the group is coupled.
+void ContactForm::gather_equations(const Group& group, std::vector<PetscInt>& equations) const {
+  gather_slave_equations(group.facet, equations);
   if (coupled(group))
     for (const auto node : points_.master()->nodes(group.master)) {
       const auto of_node = points_.master()->equations(node);
@@ -210,6 +216,7 @@ void ContactForm::gather_equations(const Group& group, std::vector<PetscInt>& eq
 }
 
 void ContactForm::couple(Coupling& coupling) const {
+  if (points_.is_following()) return couple_now(coupling);
   std::vector<PetscInt> equations;
   for (const auto& group : groups()) {
     gather_equations(group, equations);
@@ -219,14 +226,15 @@ void ContactForm::couple(Coupling& coupling) const {
 
 bool ContactForm::coupling_changed(const State& state) {
   evaluate(state);
-  bool missing = false;
-  for (std::size_t i = 0; i < active_.size(); ++i)
+  bool missing = points_.is_following() && !all_coupled_now();
+  for (std::size_t i = 0; i < active_.size() && !points_.is_following(); ++i)
     missing = missing || (active_[i] && points_.points()[i].master >= 0 && !coupled_[i]);
   if (missing) couple_near();
   return missing;
 }
 
 bool ContactForm::tangent_changed(const State& state) {
+  if (points_.is_following()) return true;
   evaluate(state);
   return !assembled_ || active_ != assembled_active_ || (tangential_ && tangential_->tangent_changed());
 }
@@ -282,6 +290,7 @@ void ContactForm::add_residual(const State& state, Residual& residual) {
       residual.add(equations, values);
     }
     if (tangential_) tangential_->add_residual(group.begin, group.end, residual);
+    if (tangential_ && points_.is_following()) add_turning_forces(group, residual);
     if (!is_unknown()) continue;
     const int field = std::get<Semismooth>(pair_.enforcement).field;
     const int vertices = num_vertices(points_.slave().types[group.facet]);
@@ -318,6 +327,7 @@ void ContactForm::add_tangent(const State& state, Tangent& tangent) {
   assembled_active_ = active_;
   assembled_ = true;
   if (tangential_) tangential_->remember_tangent(state.first_guess);
+  if (points_.is_following()) return add_tangent_now(state.first_guess, tangent);
   const auto& points = points_.points();
   std::vector<PetscInt> equations;
   std::vector<double> block, variation;
@@ -381,6 +391,7 @@ ContactHistory ContactForm::accepted() const {
   ContactHistory history;
   history.multipliers = multipliers_old_;
   history.normals = normals_old_;
+  if (points_.is_following()) history.displacement = points_.accepted_displacement();
   if (tangential_) tangential_->save(history);
   return history;
 }
@@ -388,6 +399,7 @@ ContactHistory ContactForm::accepted() const {
 void ContactForm::restore(const ContactHistory& history) {
   multipliers_ = multipliers_old_ = history.multipliers;
   normals_old_ = history.normals;
+  if (points_.is_following()) points_.restore(history.displacement);
   if (tangential_) tangential_->restore(history);
   assembled_ = false;
 }
@@ -511,8 +523,9 @@ ContactTotals ContactForm::totals(const State& state) {
     }
     for (int c = 0; c < 3; ++c)
       sums[c] += force[c];
+    const auto place = points_.force_place(i);
     for (int c = 0; c < 3; ++c)
-      sums[3 + c] += point.place[(c + 1) % 3] * force[(c + 2) % 3] - point.place[(c + 2) % 3] * force[(c + 1) % 3];
+      sums[3 + c] += place[(c + 1) % 3] * force[(c + 2) % 3] - place[(c + 2) % 3] * force[(c + 1) % 3];
     sums[6] += point.weight;
     largest[1] = std::max(largest[1], -gap_[i] / point.size);
   }

@@ -6,6 +6,7 @@
 #include "contact/contact_points.hpp"
 #include "contact/contact_samples.hpp"
 #include "contact/pair_report.hpp"
+#include "contact/point_tangent.hpp"
 #include "contact/tangential_part.hpp"
 #include "form/form.hpp"
 #include "form/switching.hpp"
@@ -42,7 +43,7 @@ class ContactForm : public Form, public PairReport, public Switching {
   ContactHistory accepted() const override;
   void restore(const ContactHistory& history) override;
   double stored_energy(const State& state) override;
-  bool tangent_is_symmetric() const override { return !tangential_; }
+  bool tangent_is_symmetric() const override { return !tangential_ && !points_.is_following(); }
 
   // contact_switching.cpp
   Switching* switching() override { return this; }
@@ -76,7 +77,12 @@ class ContactForm : public Form, public PairReport, public Switching {
   std::array<double, 3> rigid_shift() const override { return points_.rigid_shift(); }
 
  private:
-  struct Group; // consecutive points of one slave facet with one master facet
+  /// Consecutive points of one slave facet with one master facet.
+  struct Group {
+    std::size_t begin, end; // of points
+    std::int32_t facet, master;
+    std::int32_t old_master; // finite kinematics with friction: of the projection at the last accepted state
+  };
   std::vector<Group> groups() const;
   bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
   void evaluate(const State& state);
@@ -90,11 +96,29 @@ class ContactForm : public Form, public PairReport, public Switching {
   std::array<double, 3> relative_jump(const ContactPoint& point, const State& state) const;
   double turning_work(const State& state) const;
   double sigma(std::size_t i) const { return active_[i] ? augmented_[i] : 0.0; }
+  void gather_slave_equations(std::int32_t facet, std::vector<PetscInt>& equations) const;
   void gather_equations(const Group& group, std::vector<PetscInt>& equations) const;
   ContactBlock block_layout(const Group& group, std::size_t size) const;
   void gap_variation(const ContactPoint& point, const Group& group, std::span<double> variation) const;
   bool coupled(const Group& group) const;
   void couple_near();
+  // Finite kinematics (finite_contact.cpp):
+  void couple_now(Coupling& coupling) const;
+  void couple_near_now();
+  bool all_coupled_now() const;
+  void add_turning_forces(const Group& group, Residual& residual) const;
+  void add_tangent_now(bool guess_stick, Tangent& tangent) const;
+  /// A group's part of the tangent, row-major. Equations of the old master facet stand behind all others.
+  struct DenseBlock {
+    std::vector<PetscInt> equations;
+    ContactBlock parts{.size = 0, .normal_multipliers = -1, .tangential_multipliers = -1, .master = -1};
+    std::ptrdiff_t old_master = -1;
+    std::vector<double> values;
+  };
+  void add_point_now(std::size_t i, const Group& group, bool guess_stick, DenseBlock& block) const;
+  ScalarDerivative stretch_at(std::size_t i) const;
+  PointTangent tangent_at(std::size_t i, bool guess_stick) const;
+  std::vector<PetscInt> master_equations(std::int32_t facet) const;
   std::vector<double> nodal_pressure();
 
   const DofLayout& layout_;
@@ -113,6 +137,7 @@ class ContactForm : public Form, public PairReport, public Switching {
   bool assembled_ = false;
   std::vector<Hold> holds_;          // empty: none
   std::vector<std::uint8_t> wanted_; // active_ before holds
+  std::vector<std::vector<PetscInt>> coupled_equations_; // finite kinematics: of masters, sorted, per slave facet
   std::unique_ptr<TangentialPart> tangential_;
   std::vector<double> normal_traction_; // for it
   VecHandle local_multipliers_;

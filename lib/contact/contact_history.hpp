@@ -5,6 +5,7 @@
 #include "friction/return_mapping.hpp"
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,14 @@ struct NormalHistory {
   std::array<double, 3> normal{}, jump{}; // jump: u_slave − rigid shift
 };
 
+/// Finite kinematics: the projection of a point and the tangents of the slave there.
+struct PlaceHistory {
+  std::int64_t facet = -1;          // MasterSurface::name, or ContactPoint::none or rigid
+  std::array<double, 2> xi{};       // on that facet
+  std::array<double, 3> on_shape{}; // on a rigid master: the projection less the shape's shift
+  std::array<double, 6> tangents{}; // two columns
+};
+
 struct ContactHistory {
   double time = 0.0;
   std::vector<double> multipliers;                         // at PairReport::nodes(), stress
@@ -38,6 +47,9 @@ struct ContactHistory {
   std::vector<PointHistory> points;                        // of this rank; empty without friction or with `nodes`
   std::vector<PointHistory> nodes;                         // at MortarForm::nodes() with friction, instead of `points`
   std::vector<NormalHistory> normals;                      // of this rank; empty without a curved rigid master
+  // Of this rank in finite kinematics, else empty:
+  std::vector<double> displacement; // num_local x dim
+  std::vector<PlaceHistory> places; // empty without friction
 };
 
 } // namespace amontons

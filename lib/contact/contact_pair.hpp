@@ -36,6 +36,12 @@ struct SegmentIntegration {
 };
 using Integration = std::variant<FacetIntegration, SegmentIntegration>;
 
+/// Where gap, normal, slip and area are taken: in the reference configuration, with projections that are found once,
+/// or in the current one, anew for every iterate.
+struct SmallKinematics {};
+struct FiniteKinematics {};
+using ContactKinematics = std::variant<SmallKinematics, FiniteKinematics>;
+
 /// Where λ comes from: nowhere, an outer loop, an unknown of the system (extra field number `field` of the layout), the
 /// force on a bound of the normal motion, or the out-of-balance force on a node's relative motion (semismooth with the
 /// dual basis).
@@ -61,9 +67,10 @@ struct ContactPair {
   std::variant<std::string, RigidMaster> master;
   Enforcement enforcement;
   ProjectionKind projection;
-  Integration integration = FacetIntegration{}; // segment: with a meshed master only
-  double alpha = 1.0;                           // dimensionless augmentation: ε = alpha · stiffness / h
-  double search_distance = 0.0;                 // farther master facets are not looked at
+  Integration integration = FacetIntegration{}; // segment: with a meshed master and small kinematics only
+  ContactKinematics kinematics = SmallKinematics{};
+  double alpha = 1.0;           // dimensionless augmentation: ε = alpha · stiffness / h
+  double search_distance = 0.0; // farther master facets are not looked at
   Space space = Space::Solid;
   /// A body of this pair is held by contact alone: then contact is guessed where the surfaces are nearest when nothing
   /// touches yet.

@@ -13,20 +13,8 @@ namespace amontons {
 
 namespace {
 
-/// Slave and master must face each other: cosine of the angle between outward normals below this.
-constexpr double facing_cosine = -0.1;
-/// A projection onto the rim of the master counts when the point stands over it within this part of a facet.
-constexpr double rim_tolerance = 1e-6;
-
 /// A node has a master when this part of its support does; the equation of its multiplier is no smaller than that.
 constexpr double least_cover = 1e-6;
-
-double dot(std::span<const double> a, std::span<const double> b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    sum += a[i] * b[i];
-  return sum;
-}
 
 std::vector<double> facet_positions(const Mesh& mesh, std::span<const std::int32_t> nodes) {
   std::vector<double> positions;
@@ -37,39 +25,24 @@ std::vector<double> facet_positions(const Mesh& mesh, std::span<const std::int32
   return positions;
 }
 
-std::array<double, 2> centre_of(ElementType type) {
-  return num_vertices(type) == 3 ? std::array{1.0 / 3.0, 1.0 / 3.0} : std::array{0.0, 0.0};
+void include_node(Box& box, const Mesh& mesh, std::int32_t node, std::span<const double> displacement) {
+  std::array<double, 3> place{};
+  for (int c = 0; c < mesh.dim; ++c)
+    place[c] = mesh.position(node)[c] + displacement[std::size_t(node) * mesh.dim + c];
+  box.include(std::span<const double>(place.data(), mesh.dim));
 }
 
-/// Corners of the facet between which ξ lies: one for a vertex, two for an edge.
-std::vector<std::int32_t> corners_at(ElementType type, Feature feature, std::span<const double> xi) {
-  if (element_dim(type) == 1) return {xi[0] < 0.0 ? 0 : 1};
-  const auto reference = reference_nodes(type);
-  const int corners = num_vertices(type);
-  std::vector<std::pair<double, std::int32_t>> near;
-  for (int v = 0; v < corners; ++v)
-    near.emplace_back(std::hypot(reference[2 * v] - xi[0], reference[2 * v + 1] - xi[1]), v);
-  if (feature == Feature::Vertex) return {std::min_element(near.begin(), near.end())->second};
-  // The edge whose two corners see ξ in between: smallest detour.
-  std::int32_t best = 0;
-  double smallest = 1e300;
-  for (int v = 0; v < corners; ++v) {
-    const int w = (v + 1) % corners;
-    const double length = std::hypot(reference[2 * v] - reference[2 * w], reference[2 * v + 1] - reference[2 * w + 1]);
-    const double detour = near[v].first + near[w].first - length;
-    if (detour < smallest) {
-      smallest = detour;
-      best = v;
-    }
-  }
-  return {best, (best + 1) % corners};
+std::array<double, 2> centre_of(ElementType type) {
+  return num_vertices(type) == 3 ? std::array{1.0 / 3.0, 1.0 / 3.0} : std::array{0.0, 0.0};
 }
 
 } // namespace
 
 ContactPoints::ContactPoints(const DofLayout& layout, const ContactPair& pair)
-    : mesh_(layout.mesh()), pair_(pair), slave_(&mesh_.surfaces.at(pair.slave)) {
-  if (const auto* surface = std::get_if<std::string>(&pair.master)) gather_master(layout, *surface);
+    : layout_(layout), mesh_(layout.mesh()), pair_(pair), slave_(&mesh_.surfaces.at(pair.slave)) {
+  displacement_.assign(std::size_t(mesh_.num_local()) * mesh_.dim, 0.0);
+  accepted_displacement_ = gathered_displacement_ = displacement_;
+  if (const auto* surface = std::get_if<std::string>(&pair.master)) gather_master(*surface);
   if (const auto* segment = std::get_if<SegmentIntegration>(&pair.integration); segment && master_)
     place_by_segments(segment->degree);
   else
@@ -82,15 +55,34 @@ ContactPoints::ContactPoints(const DofLayout& layout, const ContactPair& pair)
     move_rigid_master(0.0);
   }
   scratch_ = {};
+  if (is_following()) follow_all();
 }
 
-void ContactPoints::gather_master(const DofLayout& layout, const std::string& surface) {
-  Box reach;
+/// Box around the slave nodes of this rank, displaced.
+Box ContactPoints::slave_box(std::span<const double> displacement) const {
+  Box box;
   for (const auto node : slave_->nodes)
-    reach.include(mesh_.position(node));
-  if (!reach.empty()) reach.inflate(pair_.search_distance);
+    include_node(box, mesh_, node, displacement);
+  return box;
+}
+
+/// The facets that slave points can meet between the last accepted state and the present iterate, or after either side
+/// has moved on by another search distance.
+void ContactPoints::gather_master(const std::string& surface) {
+  const auto& facets = mesh_.surfaces.at(surface);
+  std::vector<Box> boxes(facets.size());
+  Box reach;
+  for (const auto* displacement : {&accepted_displacement_, &displacement_}) {
+    reach.include(slave_box(*displacement));
+    for (std::int32_t f = 0; f < facets.size(); ++f)
+      for (const auto node : facets.facet(f))
+        include_node(boxes[f], mesh_, node, *displacement);
+  }
+  if (!reach.empty()) reach.inflate((is_following() ? 3.0 : 1.0) * pair_.search_distance);
   if (mesh_.dim == 2) reach.low[2] = reach.high[2] = 0.0;
-  master_ = std::make_unique<MasterSurface>(layout, mesh_.surfaces.at(surface), reach);
+  master_ = std::make_unique<MasterSurface>(layout_, facets, boxes, reach);
+  gathered_displacement_ = displacement_;
+  accepted_is_gathered_ = true;
 }
 
 // --- placing ---------------------------------------------------------------------------------------------------------
@@ -152,7 +144,7 @@ std::vector<std::int32_t> ContactPoints::facets_across(std::int32_t facet) {
     const auto nodes = master_->positions(candidate);
     std::array<double, 3> other{}, sum{};
     facet_normal(master_->type(candidate), nodes, centre_of(master_->type(candidate)), other);
-    if (dot(normal, other) > facing_cosine) continue;
+    if (!is_facing(std::span(normal).first(d), other)) continue;
     for (std::size_t i = 0; i < nodes.size(); ++i)
       sum[i % d] += nodes[i];
     facing.emplace_back(sum, candidate);
@@ -164,13 +156,19 @@ std::vector<std::int32_t> ContactPoints::facets_across(std::int32_t facet) {
   return facets;
 }
 
+/// Where the linear basis of a point stands: that of the slave itself on facets of order 1, else behind it.
+std::size_t ContactPoints::row_of_multipliers(const ContactPoint& point) const {
+  const auto type = slave_->types[point.facet];
+  return point.values + 2 + (element_order(type) == 1 ? 0 : num_nodes(type));
+}
+
 /// `area`: part of the facet's reference area that the point stands for; `values`: its row.
 void ContactPoints::add_point(std::int32_t facet, std::span<const double> positions, std::span<const double> xi,
                               double area, std::size_t values, std::int32_t guess) {
   const int d = mesh_.dim;
   const auto type = slave_->types[facet];
-  const std::size_t behind_slave = element_order(type) == 1 ? 0 : num_nodes(type);
-  ContactPoint point{.facet = facet, .values = values, .multipliers = values + 2 + behind_slave};
+  ContactPoint point{.facet = facet, .values = values, .multipliers = 0};
+  point.multipliers = row_of_multipliers(point);
   Scratch scratch{.slave_normal = {}, .guess = guess};
   facet_normal(type, positions, xi, scratch.slave_normal);
   const auto shape = slave_shape(point);
@@ -178,7 +176,7 @@ void ContactPoints::add_point(std::int32_t facet, std::span<const double> positi
     for (int c = 0; c < d; ++c)
       point.place[c] += shape[a] * positions[a * d + c];
   point.size = facet_size(type, positions);
-  point.weight = area * circumference(pair_.space, point.place[0]);
+  point.reference_weight = point.weight = area * circumference(pair_.space, point.place[0]);
   points_.push_back(point);
   scratch_.push_back(scratch);
 }
@@ -201,10 +199,11 @@ std::size_t ContactPoints::add_values(ElementType type, std::span<const double> 
 
 void ContactPoints::search() {
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (std::holds_alternative<SlaveNormal>(pair_.projection))
-      find_along_normal(points_[i], scratch_[i].slave_normal);
-    else
-      find_closest(points_[i], scratch_[i]);
+    const auto d = static_cast<std::size_t>(mesh_.dim);
+    attach(points_[i], find_master({.place = std::span(points_[i].place).first(d),
+                                    .normal = std::span(scratch_[i].slave_normal).first(d),
+                                    .size = points_[i].size,
+                                    .guess = scratch_[i].guess}));
     set_epsilon(points_[i]);
   }
   order_by_master();
@@ -230,6 +229,10 @@ void ContactPoints::order_by_master() {
 
 /// Takes the points without a master out of the multiplier basis of nodes that have a master in part of their support.
 void ContactPoints::average_over_master() {
+  if (num_values_ == 0) num_values_ = values_.size();
+  values_.resize(num_values_);
+  for (auto& point : points_)
+    point.multipliers = row_of_multipliers(point);
   NodeSpace space(mesh_, {{.name = pair_.slave, .nodes = mesh_.node_groups.at(pair_.slave)}});
   const auto& nodes = space.fields()[0].nodes;
   std::vector<std::int32_t> position(mesh_.num_local(), -1);
@@ -290,96 +293,19 @@ void ContactPoints::scale_augmentation(double factor) {
     set_epsilon(point);
 }
 
-void ContactPoints::attach(ContactPoint& point, std::int32_t facet, std::span<const double> xi) const {
-  const auto type = master_->type(facet);
-  point.master = facet;
-  shape_values(type, xi.first(element_dim(type)), std::span(point.master_shape).first(num_nodes(type)));
+MasterPlace ContactPoints::find_master(const SearchPoint& point) {
+  const auto find = std::holds_alternative<SlaveNormal>(pair_.projection) ? find_along_normal : find_closest;
+  return find(*master_, point, pair_.search_distance, found_);
 }
 
-/// The closest facing master point. n is the facet's normal inside a facet; on an edge or vertex that the surface
-/// continues across, the direction from the projection to the point (or away from it, for a penetrating point).
-void ContactPoints::find_closest(ContactPoint& point, const Scratch& scratch) {
-  const int d = mesh_.dim;
-  const std::span<const double> x(point.place.data(), d);
-  double best = pair_.search_distance;
-  Projection nearest;
-  std::int32_t facet = ContactPoint::none;
-  const auto consider = [&](std::int32_t candidate, double radius) {
-    const auto projection = closest_point(master_->type(candidate), master_->positions(candidate), x);
-    if (!projection.found || projection.distance > std::min(best, radius)) return;
-    if (dot(projection.normal, std::span(scratch.slave_normal).first(d)) > facing_cosine) return;
-    const bool tie = facet != ContactPoint::none && projection.distance > best * (1.0 - 1e-12);
-    if (tie && projection.feature != Feature::Facet) return;
-    best = projection.distance;
-    nearest = projection;
-    facet = candidate;
-  };
-  if (scratch.guess != ContactPoint::none) consider(scratch.guess, best);
-  // Nothing farther than the guess can be nearest. Without one: a box that doubles until something is found in it.
-  double radius = std::min(facet == ContactPoint::none ? point.size : best, pair_.search_distance);
-  for (;; radius = std::min(2.0 * radius, pair_.search_distance)) {
-    Box box;
-    box.include(x);
-    box.inflate(radius);
-    master_->tree().query(box, found_);
-    for (const auto candidate : found_)
-      if (candidate != scratch.guess) consider(candidate, radius);
-    if (facet != ContactPoint::none || radius >= pair_.search_distance) break;
-  }
-  if (facet == ContactPoint::none) return;
-
-  std::array<double, 3> away{};
-  for (int c = 0; c < d; ++c)
-    away[c] = x[c] - nearest.point[c];
-  const double height = dot(away, nearest.normal);
-  const double aside = std::sqrt(std::max(0.0, nearest.distance * nearest.distance - height * height));
-  point.normal = nearest.normal;
-  point.gap0 = height;
-  if (nearest.feature != Feature::Facet) {
-    const auto corners = corners_at(master_->type(facet), nearest.feature, nearest.xi);
-    const double size = facet_size(master_->type(facet), master_->positions(facet));
-    if (master_->on_rim(facet, corners)) {
-      if (aside > rim_tolerance * size) { // beyond the end of the master: nothing to touch
-        point.gap0 = 1e300;
-        return;
-      }
-    } else if (nearest.distance > rim_tolerance * size) {
-      const double sign = height < 0.0 ? -1.0 : 1.0;
-      for (int c = 0; c < d; ++c)
-        point.normal[c] = sign * away[c] / nearest.distance;
-      point.gap0 = sign * nearest.distance;
-    }
-  }
-  attach(point, facet, nearest.xi);
-}
-
-/// Along the slave's normal: n = −n_slave.
-void ContactPoints::find_along_normal(ContactPoint& point, std::span<const double> slave_normal) {
-  const int d = mesh_.dim;
-  const std::span<const double> x(point.place.data(), d);
-  Box box;
-  for (const double s : {-pair_.search_distance, pair_.search_distance}) {
-    std::array<double, 3> end{};
-    for (int c = 0; c < d; ++c)
-      end[c] = x[c] + s * slave_normal[c];
-    box.include(std::span<const double>(end.data(), d));
-  }
-  box.inflate(1e-9 * pair_.search_distance);
-  master_->tree().query(box, found_);
-  double best = pair_.search_distance;
-  for (const auto candidate : found_) {
-    const auto projection =
-        project_along(master_->type(candidate), master_->positions(candidate), x, slave_normal.first(d));
-    if (!projection.found || projection.distance > best) continue;
-    if (dot(projection.normal, slave_normal.first(d)) > facing_cosine) continue;
-    best = projection.distance;
-    point.gap0 = 0.0;
-    for (int c = 0; c < d; ++c) {
-      point.normal[c] = -slave_normal[c];
-      point.gap0 += point.normal[c] * (x[c] - projection.point[c]);
-    }
-    attach(point, candidate, projection.xi);
-  }
+void ContactPoints::attach(ContactPoint& point, const MasterPlace& place) const {
+  point.gap0 = place.gap;
+  point.normal = place.normal;
+  point.master = place.facet >= 0 ? place.facet : ContactPoint::none;
+  if (place.facet < 0) return;
+  const auto type = master_->type(place.facet);
+  shape_values(type, std::span(place.xi).first(element_dim(type)),
+               std::span(point.master_shape).first(num_nodes(type)));
 }
 
 void ContactPoints::move_rigid_master(double t) {

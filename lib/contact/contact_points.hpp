@@ -1,34 +1,47 @@
-// The quadrature points of a slave surface and what each finds on the master: normal, initial gap, shape functions. In
-// small kinematics this is done once, in the reference configuration (rigid masters: at their present place):
+// The quadrature points of a slave surface and what each finds on the master: normal, gap, shape functions. In small
+// kinematics this is done once, in the reference configuration (rigid masters: at their present place):
 //   g = g0 + n · (u_slave − u_master),  n and ρ(ξ) fixed.
+// In finite kinematics follow() does it for every iterate, in the current configuration, and takes weights there.
 #pragma once
 
 #include "contact/contact_pair.hpp"
 #include "contact/master_surface.hpp"
+#include "contact/point_search.hpp"
 #include "form/form.hpp"
+#include "geometry/contact_kinematics.hpp"
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace amontons {
 
 /// A quadrature point of the slave surface.
 struct ContactPoint {
-  std::int32_t facet;         // of the slave FacetSet
-  std::int32_t master = none; // facet of the MasterSurface, or one of the marks below
-  std::size_t values;         // where ContactPoints keeps its ξ and slave shape functions,
-  std::size_t multipliers;    // and its multiplier basis
-  double weight = 0.0;        // area
-  double size = 0.0;          // h of the slave facet
-  double epsilon = 0.0;       // augmentation parameter, force / volume
-  double gap0 = 1e300;
-  std::array<double, 3> place{};
+  std::int32_t facet;            // of the slave FacetSet
+  std::int32_t master = none;    // facet of the MasterSurface, or one of the marks below
+  std::size_t values;            // where ContactPoints keeps its ξ and slave shape functions,
+  std::size_t multipliers;       // and its multiplier basis
+  double reference_weight = 0.0; // area of the reference configuration
+  double weight = 0.0;           // in finite kinematics that of the current one
+  double size = 0.0;             // h of the slave facet
+  double epsilon = 0.0;          // augmentation parameter, force / volume
+  double gap0 = 1e300;           // in finite kinematics the current gap
+  std::array<double, 3> place{}; // reference position
   std::array<double, 3> normal{};
   std::array<double, 9> master_shape{};
 
   static constexpr std::int32_t none = -1;  // nothing within the search distance: open for good
   static constexpr std::int32_t rigid = -2; // the pair's rigid shape
+};
+
+/// A point and its projection in the current configuration.
+struct PointNow {
+  SurfacePoint slave;
+  std::array<double, 2> xi{}; // of the projection on the master's facet
+  Eigen::Vector3d projection = Eigen::Vector3d::Zero();
+  ProjectionHold hold = OnFacet{};
 };
 
 /// The points of a pair on this rank, facet by facet; within a facet those with the same master facet stand together,
@@ -65,28 +78,53 @@ class ContactPoints {
   /// Makes ε `factor` times what the pair says.
   void scale_augmentation(double factor);
 
+  // Finite kinematics:
+  bool is_following() const { return std::holds_alternative<FiniteKinematics>(pair_.kinematics); }
+  /// Takes normals, gaps, weights and master shape functions to the iterate; gathers the master anew when surfaces have
+  /// moved as far as the last gathering looked. Does nothing when the iterate is that of the last call. Collective.
+  void follow(const State& state);
+  /// Makes the iterate of the last follow() the state from which the next increment starts; and takes up an earlier
+  /// such state again.
+  void accept() { accepted_displacement_ = displacement_; }
+  const std::vector<double>& accepted_displacement() const { return accepted_displacement_; }
+  void restore(std::vector<double> accepted_displacement);
+  /// As of the last follow().
+  const PointNow& now(std::size_t i) const { return now_[i]; }
+  /// A master facet at ξ.
+  SurfacePoint master_at(std::int32_t facet, std::span<const double> xi) const {
+    return surface_point(master_->type(facet), master_->positions(facet), xi);
+  }
+  /// Where forces at a point act: its current place in finite kinematics, else its reference place.
+  std::array<double, 3> force_place(std::size_t i) const;
+
  private:
   /// What the search needs to know of a point besides its place.
   struct Scratch {
     std::array<double, 3> slave_normal;
     std::int32_t guess; // master facet that is likely to be the nearest, or none
   };
-  void gather_master(const DofLayout& layout, const std::string& surface);
+  void gather_master(const std::string& surface);
+  Box slave_box(std::span<const double> displacement) const;
+  void gather_where_needed();
+  void follow_all();
+  void place_now(ContactPoint& point, PointNow& now) const;
+  void follow_master(ContactPoint& point, PointNow& now);
   void place_by_rule(int degree);
   void place_by_segments(int degree);
   std::vector<std::int32_t> facets_across(std::int32_t facet);
   void add_point(std::int32_t facet, std::span<const double> positions, std::span<const double> xi, double area,
                  std::size_t values, std::int32_t guess);
   std::size_t add_values(ElementType type, std::span<const double> xi);
+  std::size_t row_of_multipliers(const ContactPoint& point) const;
   void average_over_master();
   void search();
   void order_by_master();
-  void find_closest(ContactPoint& point, const Scratch& scratch);
-  void find_along_normal(ContactPoint& point, std::span<const double> slave_normal);
-  void attach(ContactPoint& point, std::int32_t facet, std::span<const double> xi) const;
+  MasterPlace find_master(const SearchPoint& point);
+  void attach(ContactPoint& point, const MasterPlace& place) const;
   void set_epsilon(ContactPoint& point) const;
   void find_mean_size();
 
+  const DofLayout& layout_;
   const Mesh& mesh_;
   const ContactPair& pair_;
   const FacetSet* slave_;
@@ -100,6 +138,13 @@ class ContactPoints {
   double augmentation_ = 1.0;       // factor of ε
   double mean_size_ = 0.0;          // of the slave facets, weighted with their area; of a penalty only
   std::vector<std::int32_t> found_; // scratch
+  std::size_t num_values_ = 0;      // of values_ that are not the averages' over the master
+  // Finite kinematics:
+  std::vector<PointNow> now_;
+  std::vector<double> displacement_, accepted_displacement_, gathered_displacement_; // num_local x dim
+  std::vector<std::uint8_t> covered_; // points with a master when averages were last taken
+  bool accepted_is_gathered_ = true;
+  std::optional<double> followed_time_;
 };
 
 } // namespace amontons

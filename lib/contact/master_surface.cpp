@@ -8,13 +8,6 @@ namespace amontons {
 
 namespace {
 
-Box facet_box(const Mesh& mesh, std::span<const std::int32_t> nodes) {
-  Box box;
-  for (const auto node : nodes)
-    box.include(mesh.position(node));
-  return box;
-}
-
 /// Sends message[r] to rank r and returns everything received, in the order of the senders. Collective.
 template <class Number>
 std::vector<Number> exchange(MPI_Comm comm, MPI_Datatype type, const std::vector<std::vector<Number>>& messages) {
@@ -46,34 +39,34 @@ std::vector<Box> gather_boxes(MPI_Comm comm, const Box& mine) {
 
 } // namespace
 
-MasterSurface::MasterSurface(const DofLayout& layout, const FacetSet& surface, const Box& reach) : dim_(layout.dim()) {
+MasterSurface::MasterSurface(const DofLayout& layout, const FacetSet& surface, std::span<const Box> boxes,
+                             const Box& reach)
+    : dim_(layout.dim()) {
   const auto& mesh = layout.mesh();
   const auto reaches = gather_boxes(mesh.comm, reach);
-  // A facet travels as type, body, then for each node its global number and its dim equations; positions apart.
+  int rank = 0;
+  MPI_Comm_rank(mesh.comm, &rank);
+  // A facet travels as type, body, name, then for each node its global number and its dim equations; positions apart.
   std::vector<std::vector<std::int64_t>> numbers(reaches.size());
   std::vector<std::vector<double>> positions(reaches.size());
   for (std::int32_t f = 0; f < surface.size(); ++f) {
-    const auto box = facet_box(mesh, surface.facet(f));
-    for (std::size_t rank = 0; rank < reaches.size(); ++rank) {
-      if (reaches[rank].empty() || !box.meets(reaches[rank])) continue;
-      numbers[rank].push_back(static_cast<std::int64_t>(surface.types[f]));
-      numbers[rank].push_back(surface.bodies[f]);
+    for (std::size_t to = 0; to < reaches.size(); ++to) {
+      if (reaches[to].empty() || !boxes[f].meets(reaches[to])) continue;
+      numbers[to].push_back(static_cast<std::int64_t>(surface.types[f]));
+      numbers[to].push_back(surface.bodies[f]);
+      numbers[to].push_back((std::int64_t(rank) << 32) + f); // facets stay on their rank
       for (const auto node : surface.facet(f)) {
-        numbers[rank].push_back(mesh.global_node(node));
+        numbers[to].push_back(mesh.global_node(node));
         for (int c = 0; c < dim_; ++c)
-          numbers[rank].push_back(layout.equation(node, c));
+          numbers[to].push_back(layout.equation(node, c));
         const auto place = mesh.position(node);
-        positions[rank].insert(positions[rank].end(), place.begin(), place.end());
+        positions[to].insert(positions[to].end(), place.begin(), place.end());
       }
     }
   }
   receive(exchange(mesh.comm, MPI_INT64_T, numbers), exchange(mesh.comm, MPI_DOUBLE, positions));
   find_rim();
-  std::vector<Box> boxes(num_facets());
-  for (std::int32_t f = 0; f < num_facets(); ++f)
-    for (std::size_t a = 0; a < nodes(f).size(); ++a)
-      boxes[f].include(this->positions(f).subspan(a * dim_, dim_));
-  tree_ = BoxTree(boxes);
+  plant();
 
   displacement_.assign(equations_.size(), 0.0);
   const auto size = static_cast<PetscInt>(equations_.size());
@@ -91,7 +84,9 @@ void MasterSurface::receive(std::span<const std::int64_t> numbers, std::span<con
     const auto type = static_cast<ElementType>(numbers[at]);
     types_.push_back(type);
     bodies_.push_back(static_cast<std::int32_t>(numbers[at + 1]));
-    at += 2;
+    facet_of_name_[numbers[at + 2]] = static_cast<std::int32_t>(names_.size());
+    names_.push_back(numbers[at + 2]);
+    at += 3;
     for (int a = 0; a < amontons::num_nodes(type); ++a, at += 1 + std::size_t(dim_)) {
       const auto [place, is_new] = known.try_emplace(numbers[at], num_nodes());
       if (is_new) {
@@ -100,9 +95,41 @@ void MasterSurface::receive(std::span<const std::int64_t> numbers, std::span<con
           equations_.push_back(static_cast<PetscInt>(numbers[at + 1 + c]));
       }
       nodes_.push_back(place->second);
+      facets_of_node_.resize(num_nodes());
+      facets_of_node_[place->second].push_back(num_facets() - 1);
     }
     offsets_.push_back(static_cast<std::int32_t>(nodes_.size()));
   }
+}
+
+void MasterSurface::plant() {
+  std::vector<Box> boxes(num_facets());
+  for (std::int32_t f = 0; f < num_facets(); ++f)
+    for (std::size_t a = 0; a < nodes(f).size(); ++a)
+      boxes[f].include(positions(f).subspan(a * dim_, dim_));
+  tree_ = BoxTree(boxes);
+}
+
+std::int32_t MasterSurface::find(std::int64_t name) const {
+  const auto found = facet_of_name_.find(name);
+  return found == facet_of_name_.end() ? -1 : found->second;
+}
+
+std::vector<std::int32_t> MasterSurface::neighbourhood(std::int32_t facet) const {
+  std::vector<std::int32_t> near;
+  for (const auto node : nodes(facet))
+    near.insert(near.end(), facets_of_node_[node].begin(), facets_of_node_[node].end());
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
+}
+
+void MasterSurface::move() {
+  moved_positions_ = facet_positions_;
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (int c = 0; c < dim_; ++c)
+      moved_positions_[i * dim_ + c] += displacement_[std::size_t(nodes_[i]) * dim_ + c];
+  plant();
 }
 
 void MasterSurface::find_rim() {

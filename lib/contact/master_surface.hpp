@@ -1,5 +1,7 @@
 // The master facets that this rank's slave facets may meet: its own and copies ("ghosts") of other ranks' facets, sent
-// once to every rank whose slave box they meet, with a scatter that brings their nodes' displacements.
+// to every rank whose slave box they meet, with a scatter that brings their nodes' displacements. In small kinematics
+// that is done once and the surface stands in its reference positions; in finite kinematics it moves with its nodes and
+// is gathered again when what it has to meet has moved on.
 #pragma once
 
 #include "fe/dof_layout.hpp"
@@ -8,27 +10,33 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace amontons {
 
 class MasterSurface {
  public:
-  /// Gathers the facets of `surface` (a name of Mesh::surfaces) whose boxes meet `reach`, this rank's region of
+  /// Gathers the facets of `surface` whose boxes (one for each of this rank's) meet `reach`, this rank's region of
   /// interest. Collective.
-  MasterSurface(const DofLayout& layout, const FacetSet& surface, const Box& reach);
+  MasterSurface(const DofLayout& layout, const FacetSet& surface, std::span<const Box> boxes, const Box& reach);
 
   std::int32_t num_facets() const { return static_cast<std::int32_t>(types_.size()); }
   std::int32_t num_nodes() const { return static_cast<std::int32_t>(global_nodes_.size()); }
   ElementType type(std::int32_t facet) const { return types_[facet]; }
   std::int32_t body(std::int32_t facet) const { return bodies_[facet]; }
+  /// A name of the facet that is the same on all ranks and for the whole run; and the facet of that name, or -1.
+  std::int64_t name(std::int32_t facet) const { return names_[facet]; }
+  std::int32_t find(std::int64_t name) const;
+  /// The facets with which a facet shares nodes, and itself.
+  std::vector<std::int32_t> neighbourhood(std::int32_t facet) const;
   /// Nodes of a facet, as numbers of this surface.
   std::span<const std::int32_t> nodes(std::int32_t facet) const {
     return std::span(nodes_).subspan(offsets_[facet], offsets_[facet + 1] - offsets_[facet]);
   }
-  /// Reference positions of a facet's nodes (number of nodes x dim).
+  /// Where a facet's nodes stand (number of nodes x dim): reference positions, or after move() the current ones.
   std::span<const double> positions(std::int32_t facet) const {
-    return std::span(facet_positions_)
+    return std::span(moved_positions_.empty() ? facet_positions_ : moved_positions_)
         .subspan(std::size_t(offsets_[facet]) * dim_, std::size_t(offsets_[facet + 1] - offsets_[facet]) * dim_);
   }
   /// Displacement equations of a node, dim of them.
@@ -47,15 +55,21 @@ class MasterSurface {
   std::span<const double> displacement(std::int32_t node) const {
     return std::span(displacement_).subspan(std::size_t(node) * dim_, dim_);
   }
+  /// Takes all facets, also for the search, to where the last refresh has their nodes.
+  void move();
 
  private:
   void receive(std::span<const std::int64_t> numbers, std::span<const double> positions);
   void find_rim();
+  void plant();
 
   int dim_;
   std::vector<ElementType> types_;
   std::vector<std::int32_t> bodies_, offsets_ = {0}, nodes_;
-  std::vector<double> facet_positions_; // per entry of nodes_, dim each
+  std::vector<std::int64_t> names_;
+  std::vector<double> facet_positions_, moved_positions_; // per entry of nodes_, dim each
+  std::unordered_map<std::int64_t, std::int32_t> facet_of_name_;
+  std::vector<std::vector<std::int32_t>> facets_of_node_;
   std::vector<std::int64_t> global_nodes_;
   std::vector<PetscInt> equations_;
   std::vector<double> displacement_;

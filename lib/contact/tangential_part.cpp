@@ -27,6 +27,11 @@
 // last accepted state those that slid stand on the border, a first contact has no pressure and hence no friction yet,
 // and a tangent without friction there would send the first iterate far off.
 //
+// Finite kinematics (dense block: finite_contact.cpp). Δg_t = P (x − ρ(ξ_old)), all in the current configuration: the
+// current place of the projection less the current place of the old one, for x − ρ(ξ) lies along n. What a point
+// carries over, σ_t,old − λ_t,old, turns with the slave's surface element, q = P (R (σ_t,old − λ_t,old) + λ_t) + ε
+// Δg_t, so that a rigid rotation of everything turns tractions and does nothing else.
+//
 // A point that was open at the last accepted state starts anew: traction zero, law in its initial state. Its Δg_t is
 // that of the whole increment, for when in the increment it closed is not known.
 #include "contact/tangential_part.hpp"
@@ -66,6 +71,7 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
     for (auto& point : history_)
       for (int c = 0; c < 3; ++c)
         point.jump[c] = -points.rigid_shift()[c];
+  if (points.is_following()) path_ = std::make_unique<SlipPath>(points);
   factor_.assign(n, 1.0);
   contexts_.resize(n);
   responses_.resize(n);
@@ -90,18 +96,30 @@ TangentialPart::TangentialPart(const DofLayout& layout, const ContactPair& pair,
 
 // --- state at a point ------------------------------------------------------------------------------------------------
 
-/// What a point carries before it moves: σ_t,old + Δλ_t, or λ_t where it was open; force per area.
-TangentVector TangentialPart::carried(std::size_t i) const {
+TangentVector TangentialPart::kept(std::size_t i) const {
   const auto& point = points_.points()[i];
   const auto& old = history_[i];
+  if (old.open) return {};
   const auto nodes = points_.slave().facet(point.facet);
   const auto shape = points_.multiplier_shape(point);
-  TangentVector carried = old.traction;
+  TangentVector kept = old.traction;
   for (std::size_t a = 0; a < shape.size(); ++a)
-    for (int c = 0; c < layout_.dim(); ++c) {
-      const auto at = position_[nodes[a]];
-      carried[c] += shape[a] * (multipliers_[c][at] - (old.open ? 0.0 : multipliers_old_[c][at]));
-    }
+    for (int c = 0; c < layout_.dim(); ++c)
+      kept[c] -= shape[a] * multipliers_old_[c][position_[nodes[a]]];
+  if (!path_) return kept;
+  TangentVector turned{};
+  Eigen::Vector3d::Map(turned.data()) = path_->rotation(i).rotation * Eigen::Vector3d::Map(kept.data());
+  return turned;
+}
+
+TangentVector TangentialPart::carried(std::size_t i) const {
+  const auto& point = points_.points()[i];
+  const auto nodes = points_.slave().facet(point.facet);
+  const auto shape = points_.multiplier_shape(point);
+  TangentVector carried = kept(i);
+  for (std::size_t a = 0; a < shape.size(); ++a)
+    for (int c = 0; c < layout_.dim(); ++c)
+      carried[c] += shape[a] * multipliers_[c][position_[nodes[a]]];
   return carried;
 }
 
@@ -153,8 +171,10 @@ void TangentialPart::evaluate(const State& state, std::span<const double> sigma,
       pressed_[i] = 0;
       continue;
     }
+    if (path_) Eigen::Vector3d::Map(motion_[i].data()) = path_->moved(i);
     const auto held = tangential(carried(i), point.normal);
     const auto increment = tangential(motion_[i], point.normal);
+    if (path_) motion_[i] = increment;
     for (int c = 0; c < 3; ++c)
       trial[c] = held[c] + point.epsilon * increment[c];
     pressed_[i] = held_pressure_.empty() && sigma[i] < 0.0;
@@ -332,18 +352,24 @@ void TangentialPart::commit(const State& state) {
   accepted_time_ = state.time;
 }
 
+void TangentialPart::remember() {
+  if (path_) path_->accept();
+}
+
 void TangentialPart::roll_back() { multipliers_ = multipliers_old_; }
 
 void TangentialPart::save(ContactHistory& history) const {
   history.time = accepted_time_;
   history.tangential_multipliers = multipliers_old_;
   history.points = history_;
+  if (path_) history.places = path_->places();
 }
 
 void TangentialPart::restore(const ContactHistory& history) {
   accepted_time_ = history.time;
   multipliers_ = multipliers_old_ = history.tangential_multipliers;
   history_ = history.points;
+  if (path_) path_->restore(history.places);
 }
 
 std::vector<std::vector<double>> TangentialPart::multiplier_defect() const {

@@ -6,9 +6,11 @@
 #include "contact/contact_points.hpp"
 #include "contact/contact_samples.hpp"
 #include "contact/pair_report.hpp"
+#include "contact/slip_path.hpp"
 #include "form/form.hpp"
 #include "friction/return_mapping.hpp"
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -34,6 +36,14 @@ class TangentialPart {
   const FrictionResponse& response(std::size_t i) const { return responses_[i]; }
   const TangentVector& traction(std::size_t i) const { return responses_[i].traction; }
   ContactStatus status(std::size_t i) const;
+  bool is_pressed(std::size_t i) const { return pressed_[i] != 0; }
+  /// Finite kinematics: where the points come from. Null in small kinematics.
+  const SlipPath* path() const { return path_.get(); }
+  /// What a point carries over from the last accepted state without its multipliers: σ_t,old − λ_t,old, turned with the
+  /// slave; zero where it was open. Stress.
+  TangentVector kept(std::size_t i) const;
+  /// kept() and λ_t.
+  TangentVector carried(std::size_t i) const;
 
   /// Forces of points [begin, end), which lie on one slave facet and one master facet.
   void add_residual(std::size_t begin, std::size_t end, Residual& residual) const;
@@ -56,6 +66,8 @@ class TangentialPart {
   /// Adds what was last accepted to the pair's history, and makes a history the last accepted one.
   void save(ContactHistory& history) const;
   void restore(const ContactHistory& history);
+  /// Takes the present places for those of the last accepted state.
+  void remember();
 
   /// Cartesian components of λ_t at the pair's multiplier nodes: traction.
   const std::vector<std::vector<double>>& multipliers() const { return multipliers_; }
@@ -72,7 +84,6 @@ class TangentialPart {
  private:
   bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
   bool has_multipliers() const { return !std::holds_alternative<Penalty>(pair_.enforcement); }
-  TangentVector carried(std::size_t i) const;
   void fetch_multipliers(const State& state);
   void find_factors(double time);
   void jump_variation(const ContactPoint& point, const ContactBlock& layout, std::span<double> motion) const;
@@ -87,6 +98,7 @@ class TangentialPart {
   const NodeField& nodes_;
   std::span<const std::int32_t> position_;
   double scale_;
+  std::unique_ptr<SlipPath> path_;
   std::vector<std::vector<double>> multipliers_, multipliers_old_; // [component][node]
   std::vector<PointHistory> history_;
   double accepted_time_ = 0.0, factor_time_ = -1.0;

@@ -3,8 +3,9 @@
 
 namespace amontons {
 
-/// Has the pair a rigid master whose normal at a point changes as it moves?
+/// Has the pair a rigid master whose normal at a point of the reference configuration changes as it moves?
 bool ContactForm::master_turns() const {
+  if (points_.is_following()) return false;
   const auto* rigid = std::get_if<RigidMaster>(&pair_.master);
   return rigid && !std::holds_alternative<RigidPlane>(rigid->shape);
 }
@@ -17,8 +18,13 @@ std::array<double, 3> ContactForm::relative_jump(const ContactPoint& point, cons
 }
 
 void ContactForm::remember(const State& state) {
-  if (!master_turns()) return;
+  if (!master_turns() && !points_.is_following()) return;
   evaluate(state);
+  if (points_.is_following()) {
+    points_.accept();
+    if (tangential_) tangential_->remember();
+    return;
+  }
   const auto& points = points_.points();
   for (std::size_t i = 0; i < points.size(); ++i)
     normals_old_[i] = {

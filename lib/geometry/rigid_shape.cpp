@@ -57,7 +57,32 @@ RigidContact distance_to(const RigidCylinder& cylinder, std::span<const double> 
   return around(r, cylinder.radius, across(cylinder.axis));
 }
 
+/// Distance from the centre or the axis, with `axis` zero for a ball: the normal turns by (1 − n ⊗ n − a ⊗ a) / r.
+std::array<Vector, 3> turning(const RigidContact& contact, double radius, const Vector& axis) {
+  const double r = contact.gap + radius;
+  std::array<Vector, 3> gradient{};
+  if (r <= 0.0) return gradient;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      gradient[i][j] = ((i == j ? 1.0 : 0.0) - contact.normal[i] * contact.normal[j] - axis[i] * axis[j]) / r;
+  return gradient;
+}
+
+std::array<Vector, 3> gradient_of(const RigidPlane&, const RigidContact&) { return {}; }
+std::array<Vector, 3> gradient_of(const RigidSphere& sphere, const RigidContact& contact) {
+  return turning(contact, sphere.radius, {});
+}
+std::array<Vector, 3> gradient_of(const RigidCylinder& cylinder, const RigidContact& contact) {
+  return turning(contact, cylinder.radius, cylinder.axis);
+}
+
 } // namespace
+
+std::array<std::array<double, 3>, 3> normal_gradient(const RigidShape& shape, std::span<const double> shift,
+                                                     std::span<const double> x) {
+  const auto contact = signed_distance(shape, shift, x);
+  return std::visit([&](const auto& kind) { return gradient_of(kind, contact); }, shape);
+}
 
 RigidContact signed_distance(const RigidShape& shape, std::span<const double> shift, std::span<const double> x) {
   return std::visit([&](const auto& kind) { return distance_to(kind, shift, x); }, shape);

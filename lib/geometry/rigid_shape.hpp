@@ -33,4 +33,9 @@ struct RigidContact {
 /// `shift`: the shape's displacement. x has dim coordinates.
 RigidContact signed_distance(const RigidShape& shape, std::span<const double> shift, std::span<const double> x);
 
+/// ∂normal/∂x, row by row: the second derivative of the gap. Not defined at the centre or on the axis, where it is
+/// zero.
+std::array<std::array<double, 3>, 3> normal_gradient(const RigidShape& shape, std::span<const double> shift,
+                                                     std::span<const double> x);
+
 } // namespace amontons

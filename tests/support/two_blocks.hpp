@@ -1,64 +1,87 @@
 // Two unit blocks (squares or cubes) one above the other, meshed by n_lower and n_upper equal quadrilaterals or
-// hexahedra a side, with a gap between them: the smallest scene with a non-matching interface, made without gmsh.
+// hexahedra of order 1 or 2 a side, with a gap between them: the smallest scene with a non-matching interface, made
+// without gmsh.
 #pragma once
 
+#include "math/reference_element.hpp"
 #include "mesh/build.hpp"
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace amontons::test {
 
 inline void add_block(RawMesh& raw, int n, double floor, std::int32_t body, std::int32_t bottom, std::int32_t top) {
-  const int d = raw.dim;
+  const int d = raw.dim, order = raw.order, m = n * order; // m: steps of the lattice of nodes
   const auto first = static_cast<std::int64_t>(raw.coordinates.size() / 3);
-  const int layers = d == 3 ? n + 1 : 1;
   // Vertical is the last coordinate of the dimension: y in 2D, z in 3D.
-  for (int k = 0; k < layers; ++k)
-    for (int j = 0; j <= n; ++j)
-      for (int i = 0; i <= n; ++i) {
-        const double x = double(i) / n, y = double(j) / n, z = double(k) / n;
+  for (int k = 0; k <= (d == 3 ? m : 0); ++k)
+    for (int j = 0; j <= m; ++j)
+      for (int i = 0; i <= m; ++i) {
+        const double x = double(i) / m, y = double(j) / m, z = double(k) / m;
         if (d == 2)
           raw.coordinates.insert(raw.coordinates.end(), {x, floor + y, 0.0});
         else
           raw.coordinates.insert(raw.coordinates.end(), {x, y, floor + z});
       }
-  const auto node = [&](int i, int j, int k) { return first + (std::int64_t(k) * (n + 1) + j) * (n + 1) + i; };
-  const auto sub = [&](std::vector<std::int64_t> nodes, std::int32_t group) {
-    raw.subs.push_back({std::move(nodes), d == 2 ? ElementType::Segment2 : ElementType::Quadrilateral4, group});
+  using Lattice = std::array<int, 3>;
+  const auto node = [&](const Lattice& at) {
+    return first + (std::int64_t(at[2]) * (m + 1) + at[1]) * (m + 1) + at[0];
+  };
+  /// Nodes of an element that begins at `origin` and whose reference directions run along `ways`.
+  const auto nodes_of = [&](ElementType type, const Lattice& origin, const std::vector<Lattice>& ways) {
+    std::vector<std::int64_t> nodes;
+    const auto reference = reference_nodes(type);
+    for (std::size_t a = 0; a < std::size_t(num_nodes(type)); ++a) {
+      Lattice at = origin;
+      for (std::size_t w = 0; w < ways.size(); ++w)
+        for (std::size_t c = 0; c < 3; ++c)
+          at[c] += ways[w][c] * int(std::lround(0.5 * order * (reference[a * ways.size() + w] + 1.0)));
+      nodes.push_back(node(at));
+    }
+    return nodes;
+  };
+  const auto cell = d == 2 ? (order == 1 ? ElementType::Quadrilateral4 : ElementType::Quadrilateral9)
+                           : (order == 1 ? ElementType::Hexahedron8 : ElementType::Hexahedron27);
+  const auto face = d == 2 ? (order == 1 ? ElementType::Segment2 : ElementType::Segment3)
+                           : (order == 1 ? ElementType::Quadrilateral4 : ElementType::Quadrilateral9);
+  const Lattice x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
+  const auto sub = [&](const Lattice& origin, const std::vector<Lattice>& ways, std::int32_t group) {
+    raw.subs.push_back({nodes_of(face, origin, ways), face, group});
     ++raw.groups[group].num_elements;
   };
-  for (int k = 0; k < (d == 3 ? n : 1); ++k)
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        raw.cell_types.push_back(d == 2 ? ElementType::Quadrilateral4 : ElementType::Hexahedron8);
-        for (int up = 0; up <= (d == 3 ? 1 : 0); ++up)
-          raw.cell_nodes.insert(raw.cell_nodes.end(), {node(i, j, k + up), node(i + 1, j, k + up),
-                                                       node(i + 1, j + 1, k + up), node(i, j + 1, k + up)});
+  for (int k = 0; k < (d == 3 ? m : 1); k += order)
+    for (int j = 0; j < m; j += order)
+      for (int i = 0; i < m; i += order) {
+        raw.cell_types.push_back(cell);
+        const auto nodes = nodes_of(cell, {i, j, k}, d == 2 ? std::vector{x, y} : std::vector{x, y, z});
+        raw.cell_nodes.insert(raw.cell_nodes.end(), nodes.begin(), nodes.end());
         raw.cell_offsets.push_back(static_cast<std::int64_t>(raw.cell_nodes.size()));
         raw.cell_bodies.push_back(body);
         ++raw.groups[body].num_elements;
       }
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < m; i += order) {
     if (d == 2) {
-      sub({node(i, 0, 0), node(i + 1, 0, 0)}, bottom);
-      sub({node(i + 1, n, 0), node(i, n, 0)}, top);
+      sub({i, 0, 0}, {x}, bottom);
+      sub({i, m, 0}, {x}, top);
       continue;
     }
-    for (int j = 0; j < n; ++j) {
-      sub({node(i, j, 0), node(i, j + 1, 0), node(i + 1, j + 1, 0), node(i + 1, j, 0)}, bottom);
-      sub({node(i, j, n), node(i + 1, j, n), node(i + 1, j + 1, n), node(i, j + 1, n)}, top);
+    for (int j = 0; j < m; j += order) {
+      sub({i, j, 0}, {x, y}, bottom);
+      sub({i, j, m}, {x, y}, top);
     }
   }
 }
 
 /// Groups: bodies lower, upper; surfaces bottom, lower_top, upper_bottom, top. Complete on rank 0, empty elsewhere.
-inline RawMesh two_blocks(MPI_Comm comm, int dim, int n_lower, int n_upper, double gap) {
+inline RawMesh two_blocks(MPI_Comm comm, int dim, int n_lower, int n_upper, double gap, int order = 1) {
   RawMesh raw;
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   if (rank != 0) return raw;
   raw.dim = dim;
-  raw.order = 1;
+  raw.order = order;
   raw.groups = {{"lower", dim, 0},
                 {"upper", dim, 0},
                 {"bottom", dim - 1, 0},
@@ -70,8 +93,8 @@ inline RawMesh two_blocks(MPI_Comm comm, int dim, int n_lower, int n_upper, doub
   return raw;
 }
 
-inline Mesh two_blocks_mesh(MPI_Comm comm, int dim, int n_lower, int n_upper, double gap) {
-  return distribute_mesh(comm, two_blocks(comm, dim, n_lower, n_upper, gap), {{"upper_bottom", "lower_top"}}, 0);
+inline Mesh two_blocks_mesh(MPI_Comm comm, int dim, int n_lower, int n_upper, double gap, int order = 1) {
+  return distribute_mesh(comm, two_blocks(comm, dim, n_lower, n_upper, gap, order), {{"upper_bottom", "lower_top"}}, 0);
 }
 
 } // namespace amontons::test
