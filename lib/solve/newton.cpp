@@ -4,6 +4,7 @@
 #include "solve/kept_factorization.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace amontons {
@@ -92,6 +93,23 @@ class EnergySearch {
   Vec start_ = nullptr, force_ = nullptr, step_ = nullptr, next_ = nullptr, next_force_ = nullptr;
 };
 
+/// Whether multigrid by smoothed aggregation was chosen, here or by the user.
+bool is_aggregation() {
+  std::array<char, 64> type{};
+  AMT_PETSC(PetscOptionsGetString(nullptr, nullptr, "-pc_type", type.data(), type.size(), nullptr));
+  return std::string(type.data()) == PCGAMG;
+}
+
+/// Incomplete Cholesky as the smoother (under Chebyshev's iteration) instead of the diagonal: what cells that are much
+/// longer than high couple strongly, it nearly solves for. A fifth of the iterations on graded meshes of contact
+/// (README.md), and no dearer on even ones.
+void smooth_by_factors() {
+  default_option("-mg_levels_pc_type", PCBJACOBI);
+  default_option("-mg_levels_sub_pc_type", PCICC);
+  default_option("-mg_levels_sub_pc_factor_mat_ordering_type", MATORDERINGRCM);
+  default_option("-mg_levels_sub_pc_factor_shift_type", "positive_definite"); // factors of an SPD matrix may fail
+}
+
 } // namespace
 
 void SolveOutcome::add_effort(const SolveOutcome& other) {
@@ -109,19 +127,20 @@ void default_option(const std::string& name, const std::string& value) {
 
 std::string choose_linear_solver(const Problem& problem) {
   const auto& layout = problem.layout();
-  const PetscInt size = layout.num_global();
   const bool displacement_only = layout.num_extra() == 0;
   const bool symmetric = problem.tangent_is_symmetric();
+  const bool is_large = layout.num_global() > (layout.dim() == 2 ? multigrid_from_2d : multigrid_from_3d);
   default_option("-snes_rtol", "1e-10");
   default_option("-snes_max_it", "50");
   // Full steps end in finitely many iterations where status is all that changes. With friction (unsymmetric) they may
   // go round in circles: backtracking stops that.
   default_option("-snes_linesearch_type", symmetric ? "basic" : "bt");
-  if (displacement_only && size > (layout.dim() == 2 ? multigrid_from_2d : multigrid_from_3d)) {
+  if (displacement_only && (is_large || is_aggregation())) {
     default_option("-ksp_type", symmetric ? "cg" : "gmres");
     default_option("-ksp_rtol", "1e-8");
     default_option("-ksp_max_it", "2000");
-    default_option("-pc_type", "gamg");
+    default_option("-pc_type", PCGAMG);
+    if (symmetric && is_aggregation()) smooth_by_factors();
     return symmetric ? "conjugate gradients with smoothed-aggregation multigrid"
                      : "GMRES with smoothed-aggregation multigrid";
   }
