@@ -3,6 +3,13 @@
 // done on
 //   gap_k = g_k + n_k · (c_k − Σ_j P_kj u_j),  P_kj = ∫ ψ_k N_j^master / D_k,
 // and on the tangential part of that motion, whatever the number of ranks: each adds what its own points see.
+//
+// A node that cannot tell the contact force from that of a support is left out (leave_out): the other nodes of its
+// facets take its function ψ over, and their multipliers with it. It then moves like a node of the master: with
+// X_jk = ∫ ψ_j N_k / D_j, where k is left out,
+//   gap_j · ∫ ψ_j / D_j = ... + n_j · (c_j + Σ_k X_jk c_k − Σ P_jm u_m),
+// and the force λ_j ∫ ψ_j acts on both: the cross point modification of mortar methods (B. I. Wohlmuth, Discretization
+// Methods and Iterative Solvers Based on Domain Decomposition, Springer 2001, section 1.2).
 #include "contact/mortar_form.hpp"
 
 #include "geometry/projection.hpp"
@@ -30,11 +37,12 @@ NodeField slave_nodes(const Mesh& mesh, const ContactPair& pair) {
 MortarForm::MortarForm(const DofLayout& layout, ContactPair pair)
     : layout_(layout), pair_(std::move(pair)), nodes_(slave_nodes(layout.mesh(), pair_)),
       place_(layout.mesh().num_local(), -1), points_(layout, pair_),
-      constraint_space_(layout.mesh(), std::vector<NodeField>(8, nodes_)), gap_space_(layout.mesh(), {nodes_}) {
+      constraint_space_(layout.mesh(), std::vector<NodeField>(9, nodes_)), gap_space_(layout.mesh(), {nodes_}) {
   for (std::size_t i = 0; i < nodes_.nodes.size(); ++i)
     place_[nodes_.nodes[i]] = static_cast<std::int32_t>(i);
   multipliers_.assign(nodes_.nodes.size(), 0.0);
   multipliers_old_ = multipliers_;
+  left_out_.assign(nodes_.nodes.size(), 0);
   find_facets();
   find_constraints();
   if (pair_.friction)
@@ -71,6 +79,7 @@ void MortarForm::find_facets() {
     for (std::size_t i = facet.begin; i < facet.end; ++i)
       weights.push_back(is_covered(points[i]) ? points[i].weight : 0.0);
     facet.dual = dual_basis(shape, weights);
+    if (facet.dual) facet.area = facet.dual->integral;
     for (std::size_t i = facet.begin; facet.dual && i < facet.end; ++i)
       if (!is_covered(points[i])) facet.dual->values.row(static_cast<Eigen::Index>(i - facet.begin)).setZero();
   }
@@ -113,7 +122,7 @@ Eigen::VectorXd MortarForm::whole_integrals(std::int32_t f) const {
 /// Collective.
 void MortarForm::find_constraints() {
   const auto& points = points_.points();
-  std::vector<std::vector<double>> sums(8, std::vector<double>(nodes_.nodes.size(), 0.0));
+  std::vector<std::vector<double>> sums(9, std::vector<double>(nodes_.nodes.size(), 0.0));
   for (std::int32_t f = 0; f < slave().size(); ++f) {
     const auto& facet = facets_[f];
     const auto nodes = slave().facet(f);
@@ -122,8 +131,9 @@ void MortarForm::find_constraints() {
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const auto at = place_[nodes[k]];
       sums[5][at] += whole[k];
-      if (!facet.dual) continue;
+      if (!facet.dual || left_out_[at]) continue;
       sums[0][at] += facet.dual->integral[k];
+      sums[8][at] += facet.area[k];
       for (std::size_t i = facet.begin; i < facet.end; ++i) {
         if (!is_covered(points[i])) continue;
         const auto row = static_cast<Eigen::Index>(i - facet.begin);
@@ -144,8 +154,9 @@ void MortarForm::find_constraints() {
     const double length = std::hypot(sums[1][i], sums[2][i], sums[3][i]);
     if (sums[0][i] <= least_cover * sums[5][i] || length == 0.0) continue;
     constraints_[i] = {.weight = sums[0][i],
+                       .area = sums[8][i],
                        .normal = {sums[1][i] / length, sums[2][i] / length, sums[3][i] / length},
-                       .gap = sums[4][i] / sums[0][i],
+                       .gap = sums[4][i] / sums[8][i],
                        .epsilon = sums[6][i] / sums[0][i],
                        .size = sums[7][i] / sums[0][i]};
   }
@@ -163,7 +174,58 @@ bool MortarForm::move_rigid_master(double time) {
 
 double MortarForm::share(std::int32_t facet, std::size_t corner) const {
   const auto& dual = facets_[facet].dual;
-  return dual ? dual->integral[static_cast<Eigen::Index>(corner)] : 0.0;
+  return dual ? facets_[facet].area[static_cast<Eigen::Index>(corner)] : 0.0;
+}
+
+std::vector<std::int32_t> MortarForm::leave_out(const std::vector<std::uint8_t>& places) {
+  left_out_ = places;
+  std::vector<std::int32_t> bare;
+  for (std::int32_t f = 0; f < slave().size(); ++f) {
+    auto& facet = facets_[f];
+    if (!facet.dual) continue;
+    const auto nodes = slave().facet(f);
+    std::vector<Eigen::Index> out, left;
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      (left_out_[place_[nodes[k]]] ? out : left).push_back(static_cast<Eigen::Index>(k));
+    if (left.empty()) {
+      facet.dual.reset();
+      bare.push_back(f);
+      continue;
+    }
+    const double share = 1.0 / static_cast<double>(left.size());
+    for (const auto k : out) {
+      for (const auto j : left) {
+        facet.dual->values.col(j) += share * facet.dual->values.col(k);
+        facet.area[j] += share * facet.area[k];
+      }
+      facet.dual->values.col(k).setZero();
+      facet.area[k] = 0.0;
+    }
+  }
+  find_constraints();
+  return bare;
+}
+
+/// ∫ ψ_j N_k = share · ∫ N_k for a node k that is left out; its control in terms of nodal values.
+std::vector<MortarForm::LeftOut> MortarForm::left_out_rows() const {
+  std::vector<LeftOut> rows;
+  for (std::int32_t f = 0; f < slave().size(); ++f) {
+    const auto& dual = facets_[f].dual;
+    if (!dual) continue;
+    const auto nodes = slave().facet(f);
+    const auto count = static_cast<double>(
+        std::count_if(nodes.begin(), nodes.end(), [&](std::int32_t node) { return !left_out_[place_[node]]; }));
+    const auto& controls = controls_from_nodes(slave().types[f]);
+    for (const auto node : nodes) {
+      const double weight = constraints_[place_[node]].weight;
+      if (weight == 0.0) continue;
+      for (std::size_t k = 0; k < nodes.size(); ++k)
+        for (std::size_t a = 0; left_out_[place_[nodes[k]]] && a < nodes.size(); ++a)
+          if (controls(k, a) != 0.0)
+            rows.push_back({place_[node], nodes[a], dual->integral[k] / count / weight * controls(k, a)});
+    }
+  }
+  return rows;
 }
 
 std::vector<std::map<std::int32_t, double>> MortarForm::master_rows() const {
@@ -213,7 +275,7 @@ std::vector<double> MortarForm::nodal_gaps(const State& state) {
   gap_space_.gather(global, sums);
   std::vector<double> gaps(nodes_.nodes.size(), no_gap);
   for (std::size_t i = 0; i < gaps.size(); ++i)
-    if (constraints_[i].weight > 0.0) gaps[i] = constraints_[i].gap + sums[0][i] / constraints_[i].weight;
+    if (constraints_[i].weight > 0.0) gaps[i] = constraints_[i].gap + sums[0][i] / constraints_[i].area;
   return gaps;
 }
 
