@@ -44,6 +44,7 @@ MortarForm::MortarForm(const DofLayout& layout, ContactPair pair)
   multipliers_old_ = multipliers_;
   left_out_.assign(nodes_.nodes.size(), 0);
   find_facets();
+  divide_into_parts();
   find_constraints();
   if (pair_.friction)
     friction_ = std::make_unique<NodalFriction>(
@@ -79,7 +80,6 @@ void MortarForm::find_facets() {
     for (std::size_t i = facet.begin; i < facet.end; ++i)
       weights.push_back(is_covered(points[i]) ? points[i].weight : 0.0);
     facet.dual = dual_basis(shape, weights);
-    if (facet.dual) facet.area = facet.dual->integral;
     for (std::size_t i = facet.begin; facet.dual && i < facet.end; ++i)
       if (!is_covered(points[i])) facet.dual->values.row(static_cast<Eigen::Index>(i - facet.begin)).setZero();
   }
@@ -133,7 +133,6 @@ void MortarForm::find_constraints() {
       sums[5][at] += whole[k];
       if (!facet.dual || left_out_[at]) continue;
       sums[0][at] += facet.dual->integral[k];
-      sums[8][at] += facet.area[k];
       for (std::size_t i = facet.begin; i < facet.end; ++i) {
         if (!is_covered(points[i])) continue;
         const auto row = static_cast<Eigen::Index>(i - facet.begin);
@@ -146,6 +145,8 @@ void MortarForm::find_constraints() {
       }
     }
   }
+  for (const auto& part : parts_)
+    sums[8][part.multiplier] += part.area;
   const auto global = constraint_space_.new_vector();
   constraint_space_.add(sums, global);
   constraint_space_.gather(global, sums);
@@ -172,9 +173,23 @@ bool MortarForm::move_rigid_master(double time) {
   return true;
 }
 
-double MortarForm::share(std::int32_t facet, std::size_t corner) const {
-  const auto& dual = facets_[facet].dual;
-  return dual ? facets_[facet].area[static_cast<Eigen::Index>(corner)] : 0.0;
+void MortarForm::divide_into_parts() {
+  parts_.clear();
+  for (std::int32_t f = 0; f < slave().size(); ++f) {
+    const auto nodes = slave().facet(f);
+    std::vector<std::int32_t> left;
+    for (const auto node : nodes)
+      if (!left_out_[place_[node]]) left.push_back(place_[node]);
+    for (std::int32_t k = 0; k < std::ssize(nodes); ++k) {
+      const auto place = place_[nodes[k]];
+      const double area = facets_[f].dual ? facets_[f].dual->integral[k] : 0.0;
+      if (area == 0.0 || !left_out_[place])
+        parts_.push_back({f, k, place, area});
+      else
+        for (const auto other : left)
+          parts_.push_back({f, k, other, area / static_cast<double>(left.size())});
+    }
+  }
 }
 
 std::vector<std::int32_t> MortarForm::leave_out(const std::vector<std::uint8_t>& places) {
@@ -194,14 +209,12 @@ std::vector<std::int32_t> MortarForm::leave_out(const std::vector<std::uint8_t>&
     }
     const double share = 1.0 / static_cast<double>(left.size());
     for (const auto k : out) {
-      for (const auto j : left) {
+      for (const auto j : left)
         facet.dual->values.col(j) += share * facet.dual->values.col(k);
-        facet.area[j] += share * facet.area[k];
-      }
       facet.dual->values.col(k).setZero();
-      facet.area[k] = 0.0;
     }
   }
+  divide_into_parts();
   find_constraints();
   return bare;
 }
@@ -366,30 +379,27 @@ TangentialSums MortarForm::friction_sums() const {
   TangentialSums sums;
   if (!friction_) return sums;
   const auto shift = points_.has_rigid_master() ? points_.rigid_shift() : std::array<double, 3>{};
-  for (std::int32_t f = 0; f < slave().size(); ++f)
-    for (std::size_t k = 0; k < slave().facet(f).size(); ++k)
-      friction_->add_to(place_[slave().facet(f)[k]], share(f, k), shift, sums);
+  for (const auto& part : parts_)
+    friction_->add_to(part.multiplier, part.area, shift, sums);
   return sums;
 }
 
 double MortarForm::work_of_displacement(const State& state) {
   const auto gaps = nodal_gaps(state);
-  double work = 0.0;
-  for (std::int32_t f = 0; f < slave().size(); ++f)
-    for (std::size_t k = 0; k < slave().facet(f).size(); ++k) {
-      const auto at = place_[slave().facet(f)[k]];
-      if (multipliers_[at] < 0.0) work += share(f, k) * multipliers_[at] * (gaps[at] - constraints_[at].gap);
-    }
-  work += friction_sums().work;
+  double work = friction_sums().work;
+  for (const auto& part : parts_) {
+    const auto at = part.multiplier;
+    if (multipliers_[at] < 0.0) work += part.area * multipliers_[at] * (gaps[at] - constraints_[at].gap);
+  }
   MPI_Allreduce(MPI_IN_PLACE, &work, 1, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
   return work;
 }
 
 // --- reports ---------------------------------------------------------------------------------------------------------
 
-/// A sample is a node of a slave facet with that facet's share of the node's weight. Summed up the samples are the
-/// nodal forces of the formulation, in sum and in moment (∫ ψ_k x = D_k x_k), and none is tensile; the dual functions
-/// themselves change sign inside a facet and would show tension there.
+/// A sample is a part: a node of a slave facet with that facet's share of the node's area. Summed up the samples are
+/// the nodal forces of the formulation, in sum and in moment (∫ ψ_k x = D_k x_k), and none is tensile; the dual
+/// functions themselves change sign inside a facet and would show tension there.
 ContactSamples MortarForm::samples(const State& state) {
   const auto gaps = nodal_gaps(state);
   ContactSamples samples;
@@ -399,59 +409,71 @@ ContactSamples MortarForm::samples(const State& state) {
     samples.state_names.assign(names.begin(), names.end());
     samples.states.assign(names.size(), {});
   }
-  for (std::int32_t f = 0; f < slave().size(); ++f) {
-    const auto nodes = slave().facet(f);
-    const std::size_t e = element_dim(slave().types[f]);
+  for (const auto& [f, corner, at, area] : parts_) {
+    const std::size_t e = element_dim(slave().types[f]), k = corner;
     const auto reference = reference_nodes(slave().types[f]);
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const auto at = place_[nodes[k]];
-      samples.facet.push_back(f);
-      samples.xi.push_back({reference[k * e], e > 1 ? reference[k * e + 1] : 0.0});
-      samples.place.push_back(facets_[f].places[k]);
-      samples.normal.push_back(constraints_[at].normal);
-      samples.weight.push_back(share(f, k));
-      samples.facet_size.push_back(facets_[f].size);
-      samples.pressure.push_back(multipliers_[at] < 0.0 ? -multipliers_[at] : 0.0);
-      samples.gap.push_back(gaps[at]);
-      samples.status.push_back(friction_                ? friction_->status(at)
-                               : multipliers_[at] < 0.0 ? ContactStatus::Slip
-                                                        : ContactStatus::Open);
-      if (friction_) friction_->sample(at, samples);
-    }
+    samples.facet.push_back(f);
+    samples.xi.push_back({reference[k * e], e > 1 ? reference[k * e + 1] : 0.0});
+    samples.place.push_back(facets_[f].places[k]);
+    samples.normal.push_back(constraints_[at].normal);
+    samples.weight.push_back(area);
+    samples.facet_size.push_back(facets_[f].size);
+    samples.pressure.push_back(multipliers_[at] < 0.0 ? -multipliers_[at] : 0.0);
+    samples.gap.push_back(gaps[at]);
+    samples.status.push_back(friction_                ? friction_->status(at)
+                             : multipliers_[at] < 0.0 ? ContactStatus::Slip
+                                                      : ContactStatus::Open);
+    if (friction_) friction_->sample(at, samples);
   }
+  const auto pressure = nodal_pressure();
   for (std::size_t i = 0; i < nodes_.nodes.size(); ++i)
     if (layout_.mesh().is_vertex[nodes_.nodes[i]]) {
       samples.nodes.push_back(nodes_.nodes[i]);
-      samples.nodal_pressure.push_back(-multipliers_[i]);
+      samples.nodal_pressure.push_back(pressure[i]);
     }
   return samples;
+}
+
+/// A node's own, or the mean of what its neighbours carry for it. Collective.
+std::vector<double> MortarForm::nodal_pressure() const {
+  std::vector<std::vector<double>> sums(2, std::vector<double>(nodes_.nodes.size(), 0.0));
+  for (const auto& part : parts_) {
+    const auto at = place_[slave().facet(part.facet)[part.corner]];
+    sums[0][at] -= part.area * multipliers_[part.multiplier];
+    sums[1][at] += part.area;
+  }
+  const NodeSpace space(layout_.mesh(), std::vector<NodeField>(2, nodes_));
+  const auto global = space.new_vector();
+  space.add(sums, global);
+  space.gather(global, sums);
+  for (std::size_t i = 0; i < sums[0].size(); ++i)
+    sums[0][i] = left_out_[i] && sums[1][i] > 0.0 ? sums[0][i] / sums[1][i] : -multipliers_[i];
+  return sums[0];
 }
 
 ContactTotals MortarForm::totals(const State& state) {
   const auto gaps = nodal_gaps(state);
   double sums[16] = {}; // force, moment, area, open area; with friction its force and sums
   double largest[2] = {};
-  for (std::int32_t f = 0; f < slave().size(); ++f)
-    for (std::size_t k = 0; k < slave().facet(f).size(); ++k) {
-      const auto at = place_[slave().facet(f)[k]];
-      if (constraints_[at].weight > 0.0) largest[1] = std::max(largest[1], -gaps[at] / facets_[f].size);
-      if (multipliers_[at] >= 0.0) {
-        sums[7] += share(f, k);
-        continue;
-      }
-      const auto& place = facets_[f].places[k];
-      const auto exerted = traction(at);
-      double force[3];
-      for (int c = 0; c < 3; ++c)
-        force[c] = -share(f, k) * exerted[c];
-      for (int c = 0; c < 3; ++c) {
-        sums[c] += force[c];
-        sums[3 + c] += place[(c + 1) % 3] * force[(c + 2) % 3] - place[(c + 2) % 3] * force[(c + 1) % 3];
-        if (friction_) sums[8 + c] -= share(f, k) * friction_->traction(at)[c];
-      }
-      sums[6] += share(f, k);
-      largest[0] = std::max(largest[0], -multipliers_[at]);
+  for (const auto& [f, corner, at, area] : parts_) {
+    if (constraints_[at].weight > 0.0) largest[1] = std::max(largest[1], -gaps[at] / facets_[f].size);
+    if (multipliers_[at] >= 0.0) {
+      sums[7] += area;
+      continue;
     }
+    const auto& place = facets_[f].places[corner];
+    const auto exerted = traction(at);
+    double force[3];
+    for (int c = 0; c < 3; ++c)
+      force[c] = -area * exerted[c];
+    for (int c = 0; c < 3; ++c) {
+      sums[c] += force[c];
+      sums[3 + c] += place[(c + 1) % 3] * force[(c + 2) % 3] - place[(c + 2) % 3] * force[(c + 1) % 3];
+      if (friction_) sums[8 + c] -= area * friction_->traction(at)[c];
+    }
+    sums[6] += area;
+    largest[0] = std::max(largest[0], -multipliers_[at]);
+  }
   const auto friction = friction_sums();
   sums[11] = friction.stick_area;
   sums[12] = friction.slip_area;

@@ -78,8 +78,7 @@ class MortarForm : public Form, public PairReport {
   std::vector<std::map<std::int32_t, double>> master_rows() const;
   const MasterSurface* master() const { return points_.master(); }
   const FacetSet& slave() const { return points_.slave(); }
-  /// This rank's part of a node's area, on one facet.
-  double share(std::int32_t facet, std::size_t corner) const;
+
   /// Where a local mesh node stands in nodes(), -1 for others.
   std::int32_t place(std::int32_t node) const { return place_[node]; }
   /// Moves a rigid master; returns whether normals and gaps are others than before. Collective.
@@ -93,15 +92,24 @@ class MortarForm : public Form, public PairReport {
     /// Rows of points that are not covered are zero, columns of nodes that are left out too; absent where the facet has
     /// too little cover or no node is left.
     std::optional<DualBasis> dual = std::nullopt;
-    Eigen::VectorXd area = {}; // ∫ ψ
+  };
+  /// Area around a node of a facet that the multiplier of a node acts on: that node's, or a neighbour's where the node
+  /// is left out. Together the forces on parts, at their places, are those of the formulation.
+  struct Part {
+    std::int32_t facet;
+    std::int32_t corner;
+    std::int32_t multiplier; // place in nodes()
+    double area;
   };
   void find_facets();
+  void divide_into_parts();
   PointTable control_shape(std::int32_t facet) const;
   Eigen::VectorXd whole_integrals(std::int32_t facet) const;
   void find_constraints();
   std::vector<double> nodal_gaps(const State& state);
   bool is_covered(const ContactPoint& point) const { return point.master != ContactPoint::none; }
   TangentialSums friction_sums() const;
+  std::vector<double> nodal_pressure() const;
   bool is_loaded(std::int32_t facet) const;
   std::array<double, 3> traction(std::size_t place) const;
 
@@ -113,6 +121,7 @@ class MortarForm : public Form, public PairReport {
   NodeSpace constraint_space_, gap_space_;
   std::vector<SlaveFacet> facets_;     // of the slave FacetSet
   std::vector<std::uint8_t> left_out_; // per node
+  std::vector<Part> parts_;            // facet by facet
   std::vector<Constraint> constraints_;
   std::vector<double> multipliers_, multipliers_old_; // traction, <= 0
   double rigid_time_ = 0.0;
