@@ -4,16 +4,17 @@
 //   f_h + D ℓ λ_n = 0,   f_c + D t_c · λ_t = 0,   ℓ = |ñ|, D = ∫ ψ_k.
 // So λ_n = −f_h / (D ℓ) and λ_t = −Σ t_c f_c / D, row by row: no multiplier is an unknown. Put into the conditions of
 // the augmented Lagrangian (kernel.hpp, tangential_part.cpp),
-//   λ̂_n = λ_n + ε g,  g = ℓ (û_h − bound),  σ_n = min(0, λ̂_n);   q = λ_t + ε Δg_t,  σ_t = return_map(q, p = −σ_n),
-// they make the residual of the transformed problem
-//   R_h = f_h + D ℓ σ_n   (open: f_h; closed: D ε ℓ² (û_h − bound)),
+//   λ̂_n = λ_n + ε g,  g = κ ℓ (û_h − bound),  σ_n = min(0, λ̂_n);   q = λ_t + ε Δg_t,  σ_t = return_map(q, p = −σ_n),
+// with Δg_t = κ Σ t_c Δû_c and κ = D / ∫ ψ (1 but where neighbours are left out, mortar_form.cpp), they make the
+// residual of the transformed problem
+//   R_h = f_h + D ℓ σ_n   (open: f_h; closed: D ε ℓ g),
 //   R_c = f_c + D t_c · σ_t   (stick: D ε t_c · Δg_t),
 // displacement-only, with the primal-dual active set as its semismooth Newton method (S. Hüeber, B. I. Wohlmuth,
 // Comput. Methods Appl. Mech. Engrg. 194 (2005) 3147-3166; friction: S. Hüeber, G. Stadler, B. I. Wohlmuth, SIAM J.
 // Sci. Comput. 30 (2008) 572-596; M. Gitterle, A. Popp, M. Gee, W. Wall, Int. J. Numer. Meth. Engng. 84 (2010)
 // 543-571). At the solution ε has dropped out. Its derivative, closed, with D_q = ∂σ_t/∂q, c_p = ∂σ_t/∂p:
-//   dR_h = D ε ℓ² dû_h
-//   dR_c = df_c − Σ_e (t_c · D_q t_e) (df_e − D ε dû_e) + t_c · c_p (df_h / ℓ − D ε ℓ dû_h)
+//   dR_h = D ε κ ℓ² dû_h
+//   dR_c = df_c − Σ_e (t_c · D_q t_e) (df_e − D ε κ dû_e) + t_c · c_p (df_h / ℓ − D ε κ ℓ dû_h)
 // where df is the row of Tᵀ K T; without friction it stays symmetric, for a fixed û_h takes its column along.
 //
 // The first step of an increment takes closed nodes for sticking, in residual and derivative: at the last accepted
@@ -92,7 +93,7 @@ void CondensedContact::find_normal_part(const VecReader& changed, const VecReade
     const PetscInt host = node.first + frame.host;
     node.motion = changed[host] - lower[host];
     const double lambda = -forces[host] / (constraint.weight * frame.length);
-    node.augmented = augmented_traction(lambda, constraint.epsilon, frame.length * node.motion);
+    node.augmented = augmented_traction(lambda, constraint.epsilon, gap(node));
     node.closed = normal_traction_derivative(node.augmented) > 0.0;
   }
 }
@@ -102,7 +103,7 @@ void CondensedContact::find_normal_part(const VecReader& changed, const VecReade
 void CondensedContact::guess_contact() {
   const std::size_t count = transform_.pairs().size();
   std::vector<double> nearest(count, 1e300), touches(count, 0.0); // gap / h
-  const auto distance = [&](const Node& node) { return frame(node).length * node.motion / constraint(node).size; };
+  const auto distance = [&](const Node& node) { return gap(node) / constraint(node).size; };
   for (const auto& node : nodes_) {
     nearest[node.pair] = std::min(nearest[node.pair], distance(node));
     if (node.closed) touches[node.pair] = 1.0;
@@ -122,7 +123,7 @@ void CondensedContact::find_tangential_part(Node& node, const VecReader& changed
   const auto& friction = *pair(node).friction();
   node.jump = {};
   for (int c = 0; c < problem_.layout().dim(); ++c)
-    if (frame.is_free[c]) add(node.jump, changed[node.first + c], frame.axis(c));
+    if (frame.is_free[c]) add(node.jump, constraint.leverage() * changed[node.first + c], frame.axis(c));
   if (pair(node).points().has_rigid_master()) add(node.jump, -1.0, pair(node).rigid_shift());
   if (!node.closed) return;
   const auto motion = friction.motion(node.place, node.jump);
@@ -142,7 +143,7 @@ void CondensedContact::set_residual(const Node& node, Vec residual) const {
   const auto& frame = this->frame(node);
   const auto& constraint = this->constraint(node);
   VecArray values(residual);
-  values[node.first + frame.host] = constraint.weight * constraint.epsilon * frame.length * frame.length * node.motion;
+  values[node.first + frame.host] = constraint.weight * constraint.epsilon * frame.length * gap(node);
   if (!pair(node).friction()) return;
   for (int c = 0; c < problem_.layout().dim(); ++c)
     if (frame.is_free[c] && c != frame.host)
@@ -152,7 +153,7 @@ void CondensedContact::set_residual(const Node& node, Vec residual) const {
 ConditionRows CondensedContact::rows_of(const Node& node) const {
   const auto& frame = this->frame(node);
   const auto& constraint = this->constraint(node);
-  const double stiffness = constraint.weight * constraint.epsilon;
+  const double stiffness = constraint.weight * constraint.epsilon * constraint.leverage();
   const int dim = problem_.layout().dim(), h = frame.host;
   ConditionRows rows{.size = dim};
   for (int r = 0; r < dim; ++r) {

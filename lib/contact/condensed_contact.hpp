@@ -38,6 +38,7 @@ class CondensedContact : public CondensedUnknowns {
   const MortarForm& pair(const Node& node) const { return *transform_.pairs()[node.pair]; }
   const NodeFrame& frame(const Node& node) const { return transform_.frames(node.pair)[node.place]; }
   const MortarForm::Constraint& constraint(const Node& node) const { return pair(node).constraints()[node.place]; }
+  double gap(const Node& node) const { return constraint(node).leverage() * frame(node).length * node.motion; }
   void collect_nodes();
   void find_normal_part(const VecReader& changed, const VecReader& forces);
   void guess_contact();

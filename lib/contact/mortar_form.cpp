@@ -3,6 +3,13 @@
 // done on
 //   gap_k = g_k + n_k · (c_k − Σ_j P_kj u_j),  P_kj = ∫ ψ_k N_j^master / D_k,
 // and on the tangential part of that motion, whatever the number of ranks: each adds what its own points see.
+//
+// A node that cannot tell the contact force from that of a support is left out (leave_out): the other nodes of its
+// facets take its function ψ over, and their multipliers with it. It then moves like a node of the master: with
+// X_jk = ∫ ψ_j N_k / D_j, where k is left out,
+//   gap_j · ∫ ψ_j / D_j = ... + n_j · (c_j + Σ_k X_jk c_k − Σ P_jm u_m),
+// and the force λ_j ∫ ψ_j acts on both: the cross point modification of mortar methods (B. I. Wohlmuth, Discretization
+// Methods and Iterative Solvers Based on Domain Decomposition, Springer 2001, section 1.2).
 #include "contact/mortar_form.hpp"
 
 #include "geometry/projection.hpp"
@@ -30,12 +37,14 @@ NodeField slave_nodes(const Mesh& mesh, const ContactPair& pair) {
 MortarForm::MortarForm(const DofLayout& layout, ContactPair pair)
     : layout_(layout), pair_(std::move(pair)), nodes_(slave_nodes(layout.mesh(), pair_)),
       place_(layout.mesh().num_local(), -1), points_(layout, pair_),
-      constraint_space_(layout.mesh(), std::vector<NodeField>(8, nodes_)), gap_space_(layout.mesh(), {nodes_}) {
+      constraint_space_(layout.mesh(), std::vector<NodeField>(9, nodes_)), gap_space_(layout.mesh(), {nodes_}) {
   for (std::size_t i = 0; i < nodes_.nodes.size(); ++i)
     place_[nodes_.nodes[i]] = static_cast<std::int32_t>(i);
   multipliers_.assign(nodes_.nodes.size(), 0.0);
   multipliers_old_ = multipliers_;
+  left_out_.assign(nodes_.nodes.size(), 0);
   find_facets();
+  divide_into_parts();
   find_constraints();
   if (pair_.friction)
     friction_ = std::make_unique<NodalFriction>(
@@ -113,7 +122,7 @@ Eigen::VectorXd MortarForm::whole_integrals(std::int32_t f) const {
 /// Collective.
 void MortarForm::find_constraints() {
   const auto& points = points_.points();
-  std::vector<std::vector<double>> sums(8, std::vector<double>(nodes_.nodes.size(), 0.0));
+  std::vector<std::vector<double>> sums(9, std::vector<double>(nodes_.nodes.size(), 0.0));
   for (std::int32_t f = 0; f < slave().size(); ++f) {
     const auto& facet = facets_[f];
     const auto nodes = slave().facet(f);
@@ -122,7 +131,7 @@ void MortarForm::find_constraints() {
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const auto at = place_[nodes[k]];
       sums[5][at] += whole[k];
-      if (!facet.dual) continue;
+      if (!facet.dual || left_out_[at]) continue;
       sums[0][at] += facet.dual->integral[k];
       for (std::size_t i = facet.begin; i < facet.end; ++i) {
         if (!is_covered(points[i])) continue;
@@ -136,6 +145,8 @@ void MortarForm::find_constraints() {
       }
     }
   }
+  for (const auto& part : parts_)
+    sums[8][part.multiplier] += part.area;
   const auto global = constraint_space_.new_vector();
   constraint_space_.add(sums, global);
   constraint_space_.gather(global, sums);
@@ -144,8 +155,9 @@ void MortarForm::find_constraints() {
     const double length = std::hypot(sums[1][i], sums[2][i], sums[3][i]);
     if (sums[0][i] <= least_cover * sums[5][i] || length == 0.0) continue;
     constraints_[i] = {.weight = sums[0][i],
+                       .area = sums[8][i],
                        .normal = {sums[1][i] / length, sums[2][i] / length, sums[3][i] / length},
-                       .gap = sums[4][i] / sums[0][i],
+                       .gap = sums[4][i] / sums[8][i],
                        .epsilon = sums[6][i] / sums[0][i],
                        .size = sums[7][i] / sums[0][i]};
   }
@@ -161,9 +173,72 @@ bool MortarForm::move_rigid_master(double time) {
   return true;
 }
 
-double MortarForm::share(std::int32_t facet, std::size_t corner) const {
-  const auto& dual = facets_[facet].dual;
-  return dual ? dual->integral[static_cast<Eigen::Index>(corner)] : 0.0;
+void MortarForm::divide_into_parts() {
+  parts_.clear();
+  for (std::int32_t f = 0; f < slave().size(); ++f) {
+    const auto nodes = slave().facet(f);
+    std::vector<std::int32_t> left;
+    for (const auto node : nodes)
+      if (!left_out_[place_[node]]) left.push_back(place_[node]);
+    for (std::int32_t k = 0; k < std::ssize(nodes); ++k) {
+      const auto place = place_[nodes[k]];
+      const double area = facets_[f].dual ? facets_[f].dual->integral[k] : 0.0;
+      if (area == 0.0 || !left_out_[place])
+        parts_.push_back({f, k, place, area});
+      else
+        for (const auto other : left)
+          parts_.push_back({f, k, other, area / static_cast<double>(left.size())});
+    }
+  }
+}
+
+std::vector<std::int32_t> MortarForm::leave_out(const std::vector<std::uint8_t>& places) {
+  left_out_ = places;
+  std::vector<std::int32_t> bare;
+  for (std::int32_t f = 0; f < slave().size(); ++f) {
+    auto& facet = facets_[f];
+    if (!facet.dual) continue;
+    const auto nodes = slave().facet(f);
+    std::vector<Eigen::Index> out, left;
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      (left_out_[place_[nodes[k]]] ? out : left).push_back(static_cast<Eigen::Index>(k));
+    if (left.empty()) {
+      facet.dual.reset();
+      bare.push_back(f);
+      continue;
+    }
+    const double share = 1.0 / static_cast<double>(left.size());
+    for (const auto k : out) {
+      for (const auto j : left)
+        facet.dual->values.col(j) += share * facet.dual->values.col(k);
+      facet.dual->values.col(k).setZero();
+    }
+  }
+  divide_into_parts();
+  find_constraints();
+  return bare;
+}
+
+/// ∫ ψ_j N_k = share · ∫ N_k for a node k that is left out; its control in terms of nodal values.
+std::vector<MortarForm::LeftOut> MortarForm::left_out_rows() const {
+  std::vector<LeftOut> rows;
+  for (std::int32_t f = 0; f < slave().size(); ++f) {
+    const auto& dual = facets_[f].dual;
+    if (!dual) continue;
+    const auto nodes = slave().facet(f);
+    const auto count = static_cast<double>(
+        std::count_if(nodes.begin(), nodes.end(), [&](std::int32_t node) { return !left_out_[place_[node]]; }));
+    const auto& controls = controls_from_nodes(slave().types[f]);
+    for (const auto node : nodes) {
+      const double weight = constraints_[place_[node]].weight;
+      if (weight == 0.0) continue;
+      for (std::size_t k = 0; k < nodes.size(); ++k)
+        for (std::size_t a = 0; left_out_[place_[nodes[k]]] && a < nodes.size(); ++a)
+          if (controls(k, a) != 0.0)
+            rows.push_back({place_[node], nodes[a], dual->integral[k] / count / weight * controls(k, a)});
+    }
+  }
+  return rows;
 }
 
 std::vector<std::map<std::int32_t, double>> MortarForm::master_rows() const {
@@ -213,7 +288,7 @@ std::vector<double> MortarForm::nodal_gaps(const State& state) {
   gap_space_.gather(global, sums);
   std::vector<double> gaps(nodes_.nodes.size(), no_gap);
   for (std::size_t i = 0; i < gaps.size(); ++i)
-    if (constraints_[i].weight > 0.0) gaps[i] = constraints_[i].gap + sums[0][i] / constraints_[i].weight;
+    if (constraints_[i].weight > 0.0) gaps[i] = constraints_[i].gap + sums[0][i] / constraints_[i].area;
   return gaps;
 }
 
@@ -304,30 +379,27 @@ TangentialSums MortarForm::friction_sums() const {
   TangentialSums sums;
   if (!friction_) return sums;
   const auto shift = points_.has_rigid_master() ? points_.rigid_shift() : std::array<double, 3>{};
-  for (std::int32_t f = 0; f < slave().size(); ++f)
-    for (std::size_t k = 0; k < slave().facet(f).size(); ++k)
-      friction_->add_to(place_[slave().facet(f)[k]], share(f, k), shift, sums);
+  for (const auto& part : parts_)
+    friction_->add_to(part.multiplier, part.area, shift, sums);
   return sums;
 }
 
 double MortarForm::work_of_displacement(const State& state) {
   const auto gaps = nodal_gaps(state);
-  double work = 0.0;
-  for (std::int32_t f = 0; f < slave().size(); ++f)
-    for (std::size_t k = 0; k < slave().facet(f).size(); ++k) {
-      const auto at = place_[slave().facet(f)[k]];
-      if (multipliers_[at] < 0.0) work += share(f, k) * multipliers_[at] * (gaps[at] - constraints_[at].gap);
-    }
-  work += friction_sums().work;
+  double work = friction_sums().work;
+  for (const auto& part : parts_) {
+    const auto at = part.multiplier;
+    if (multipliers_[at] < 0.0) work += part.area * multipliers_[at] * (gaps[at] - constraints_[at].gap);
+  }
   MPI_Allreduce(MPI_IN_PLACE, &work, 1, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
   return work;
 }
 
 // --- reports ---------------------------------------------------------------------------------------------------------
 
-/// A sample is a node of a slave facet with that facet's share of the node's weight. Summed up the samples are the
-/// nodal forces of the formulation, in sum and in moment (∫ ψ_k x = D_k x_k), and none is tensile; the dual functions
-/// themselves change sign inside a facet and would show tension there.
+/// A sample is a part: a node of a slave facet with that facet's share of the node's area. Summed up the samples are
+/// the nodal forces of the formulation, in sum and in moment (∫ ψ_k x = D_k x_k), and none is tensile; the dual
+/// functions themselves change sign inside a facet and would show tension there.
 ContactSamples MortarForm::samples(const State& state) {
   const auto gaps = nodal_gaps(state);
   ContactSamples samples;
@@ -337,59 +409,71 @@ ContactSamples MortarForm::samples(const State& state) {
     samples.state_names.assign(names.begin(), names.end());
     samples.states.assign(names.size(), {});
   }
-  for (std::int32_t f = 0; f < slave().size(); ++f) {
-    const auto nodes = slave().facet(f);
-    const std::size_t e = element_dim(slave().types[f]);
+  for (const auto& [f, corner, at, area] : parts_) {
+    const std::size_t e = element_dim(slave().types[f]), k = corner;
     const auto reference = reference_nodes(slave().types[f]);
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const auto at = place_[nodes[k]];
-      samples.facet.push_back(f);
-      samples.xi.push_back({reference[k * e], e > 1 ? reference[k * e + 1] : 0.0});
-      samples.place.push_back(facets_[f].places[k]);
-      samples.normal.push_back(constraints_[at].normal);
-      samples.weight.push_back(share(f, k));
-      samples.facet_size.push_back(facets_[f].size);
-      samples.pressure.push_back(multipliers_[at] < 0.0 ? -multipliers_[at] : 0.0);
-      samples.gap.push_back(gaps[at]);
-      samples.status.push_back(friction_                ? friction_->status(at)
-                               : multipliers_[at] < 0.0 ? ContactStatus::Slip
-                                                        : ContactStatus::Open);
-      if (friction_) friction_->sample(at, samples);
-    }
+    samples.facet.push_back(f);
+    samples.xi.push_back({reference[k * e], e > 1 ? reference[k * e + 1] : 0.0});
+    samples.place.push_back(facets_[f].places[k]);
+    samples.normal.push_back(constraints_[at].normal);
+    samples.weight.push_back(area);
+    samples.facet_size.push_back(facets_[f].size);
+    samples.pressure.push_back(multipliers_[at] < 0.0 ? -multipliers_[at] : 0.0);
+    samples.gap.push_back(gaps[at]);
+    samples.status.push_back(friction_                ? friction_->status(at)
+                             : multipliers_[at] < 0.0 ? ContactStatus::Slip
+                                                      : ContactStatus::Open);
+    if (friction_) friction_->sample(at, samples);
   }
+  const auto pressure = nodal_pressure();
   for (std::size_t i = 0; i < nodes_.nodes.size(); ++i)
     if (layout_.mesh().is_vertex[nodes_.nodes[i]]) {
       samples.nodes.push_back(nodes_.nodes[i]);
-      samples.nodal_pressure.push_back(-multipliers_[i]);
+      samples.nodal_pressure.push_back(pressure[i]);
     }
   return samples;
+}
+
+/// A node's own, or the mean of what its neighbours carry for it. Collective.
+std::vector<double> MortarForm::nodal_pressure() const {
+  std::vector<std::vector<double>> sums(2, std::vector<double>(nodes_.nodes.size(), 0.0));
+  for (const auto& part : parts_) {
+    const auto at = place_[slave().facet(part.facet)[part.corner]];
+    sums[0][at] -= part.area * multipliers_[part.multiplier];
+    sums[1][at] += part.area;
+  }
+  const NodeSpace space(layout_.mesh(), std::vector<NodeField>(2, nodes_));
+  const auto global = space.new_vector();
+  space.add(sums, global);
+  space.gather(global, sums);
+  for (std::size_t i = 0; i < sums[0].size(); ++i)
+    sums[0][i] = left_out_[i] && sums[1][i] > 0.0 ? sums[0][i] / sums[1][i] : -multipliers_[i];
+  return sums[0];
 }
 
 ContactTotals MortarForm::totals(const State& state) {
   const auto gaps = nodal_gaps(state);
   double sums[16] = {}; // force, moment, area, open area; with friction its force and sums
   double largest[2] = {};
-  for (std::int32_t f = 0; f < slave().size(); ++f)
-    for (std::size_t k = 0; k < slave().facet(f).size(); ++k) {
-      const auto at = place_[slave().facet(f)[k]];
-      if (constraints_[at].weight > 0.0) largest[1] = std::max(largest[1], -gaps[at] / facets_[f].size);
-      if (multipliers_[at] >= 0.0) {
-        sums[7] += share(f, k);
-        continue;
-      }
-      const auto& place = facets_[f].places[k];
-      const auto exerted = traction(at);
-      double force[3];
-      for (int c = 0; c < 3; ++c)
-        force[c] = -share(f, k) * exerted[c];
-      for (int c = 0; c < 3; ++c) {
-        sums[c] += force[c];
-        sums[3 + c] += place[(c + 1) % 3] * force[(c + 2) % 3] - place[(c + 2) % 3] * force[(c + 1) % 3];
-        if (friction_) sums[8 + c] -= share(f, k) * friction_->traction(at)[c];
-      }
-      sums[6] += share(f, k);
-      largest[0] = std::max(largest[0], -multipliers_[at]);
+  for (const auto& [f, corner, at, area] : parts_) {
+    if (constraints_[at].weight > 0.0) largest[1] = std::max(largest[1], -gaps[at] / facets_[f].size);
+    if (multipliers_[at] >= 0.0) {
+      sums[7] += area;
+      continue;
     }
+    const auto& place = facets_[f].places[corner];
+    const auto exerted = traction(at);
+    double force[3];
+    for (int c = 0; c < 3; ++c)
+      force[c] = -area * exerted[c];
+    for (int c = 0; c < 3; ++c) {
+      sums[c] += force[c];
+      sums[3 + c] += place[(c + 1) % 3] * force[(c + 2) % 3] - place[(c + 2) % 3] * force[(c + 1) % 3];
+      if (friction_) sums[8 + c] -= area * friction_->traction(at)[c];
+    }
+    sums[6] += area;
+    largest[0] = std::max(largest[0], -multipliers_[at]);
+  }
   const auto friction = friction_sums();
   sums[11] = friction.stick_area;
   sums[12] = friction.slip_area;

@@ -50,20 +50,35 @@ class MortarForm : public Form, public PairReport {
   double work_of_displacement(const State& state) override;
   std::array<double, 3> rigid_shift() const override { return points_.rigid_shift(); }
 
-  /// What the constraint of a node is made of, over all ranks: gap + normal · (c_slave − Σ P u_master) >= 0.
+  /// What the constraint of a node is made of, over all ranks, with D = ∫ ψ N:
+  /// gap · area / D + normal · (c_slave + Σ X c_left_out − Σ P u_master) >= 0.
   struct Constraint {
-    double weight = 0.0;              // D = ∫ ψ = ∫ N over the covered part, area; 0: no master covers the node
+    double weight = 0.0;              // D, area; 0: no master covers the node, or it is left out
+    double area = 0.0;                // ∫ ψ: D, and what the node takes over from those that are left out
     std::array<double, 3> normal{};   // unit mean of the points' normals, weighted with N
-    double gap = 0.0;                 // initial: ∫ ψ g0 / D, length
+    double gap = 0.0;                 // initial: ∫ ψ g0 / ∫ ψ, length
     double epsilon = 0.0, size = 0.0; // means over the points around: augmentation, force / volume; h of the facets
+
+    /// Mean motion of the surroundings, ∫ ψ (u_slave − u_master) / ∫ ψ, per motion of the node itself.
+    double leverage() const { return weight / area; }
   };
   const std::vector<Constraint>& constraints() const { return constraints_; }
+  /// Leaves nodes of nodes() without a multiplier (`places`: flags, the same on all ranks): their functions ψ go to the
+  /// other nodes of each facet, so that a uniform traction stays one. Returns the facets of this rank that have no node
+  /// left. Once only. Collective.
+  std::vector<std::int32_t> leave_out(const std::vector<std::uint8_t>& places);
+  /// This rank's part of X, by which a constraint follows nodes that are left out: coefficient of the displacement of
+  /// local mesh node `node` in the row of nodes()[place].
+  struct LeftOut {
+    std::int32_t place, node;
+    double coefficient;
+  };
+  std::vector<LeftOut> left_out_rows() const;
   /// This rank's part of the rows of P = D⁻¹ M, one a node of nodes(): node of master() -> coefficient.
   std::vector<std::map<std::int32_t, double>> master_rows() const;
   const MasterSurface* master() const { return points_.master(); }
   const FacetSet& slave() const { return points_.slave(); }
-  /// This rank's part of a node's weight, on one facet.
-  double share(std::int32_t facet, std::size_t corner) const;
+
   /// Where a local mesh node stands in nodes(), -1 for others.
   std::int32_t place(std::int32_t node) const { return place_[node]; }
   /// Moves a rigid master; returns whether normals and gaps are others than before. Collective.
@@ -74,16 +89,27 @@ class MortarForm : public Form, public PairReport {
     std::size_t begin = 0, end = 0;            // of points
     double size = 0.0;                         // h
     std::vector<std::array<double, 3>> places; // of the controls
-    /// Rows of points that are not covered are zero; absent where the facet has too little cover.
+    /// Rows of points that are not covered are zero, columns of nodes that are left out too; absent where the facet has
+    /// too little cover or no node is left.
     std::optional<DualBasis> dual = std::nullopt;
   };
+  /// Area around a node of a facet that the multiplier of a node acts on: that node's, or a neighbour's where the node
+  /// is left out. Together the forces on parts, at their places, are those of the formulation.
+  struct Part {
+    std::int32_t facet;
+    std::int32_t corner;
+    std::int32_t multiplier; // place in nodes()
+    double area;
+  };
   void find_facets();
+  void divide_into_parts();
   PointTable control_shape(std::int32_t facet) const;
   Eigen::VectorXd whole_integrals(std::int32_t facet) const;
   void find_constraints();
   std::vector<double> nodal_gaps(const State& state);
   bool is_covered(const ContactPoint& point) const { return point.master != ContactPoint::none; }
   TangentialSums friction_sums() const;
+  std::vector<double> nodal_pressure() const;
   bool is_loaded(std::int32_t facet) const;
   std::array<double, 3> traction(std::size_t place) const;
 
@@ -93,7 +119,9 @@ class MortarForm : public Form, public PairReport {
   std::vector<std::int32_t> place_; // of a local mesh node in nodes_, or -1
   ContactPoints points_;
   NodeSpace constraint_space_, gap_space_;
-  std::vector<SlaveFacet> facets_; // of the slave FacetSet
+  std::vector<SlaveFacet> facets_;     // of the slave FacetSet
+  std::vector<std::uint8_t> left_out_; // per node
+  std::vector<Part> parts_;            // facet by facet
   std::vector<Constraint> constraints_;
   std::vector<double> multipliers_, multipliers_old_; // traction, <= 0
   double rigid_time_ = 0.0;

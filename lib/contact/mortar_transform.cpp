@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace amontons {
 
@@ -30,6 +31,8 @@ std::string enforce_text(const MortarForm& pair) {
 
 /// A node of whose normal less than this is free has no constraint: the supports decide where it goes.
 constexpr double least_free_normal = 0.1;
+/// Nodes this near to a plane of symmetry are on it; relative to the facets' size.
+constexpr double same_plane = 1e-6;
 
 MatHandle product(Mat a, Mat b) {
   MatHandle result;
@@ -65,6 +68,7 @@ MortarTransform::MortarTransform(const Problem& problem, std::vector<MortarForm*
       facet_totals_[pair->nodes().nodes[i]] += counts[0][i];
     facet_counts_.push_back(std::move(counts[0]));
   }
+  leave_out_held();
   check_pairs();
   build();
 }
@@ -74,10 +78,77 @@ void MortarTransform::find_held() {
   hold_.assign(std::size_t(mesh.num_local()) * dim_, Hold::Free);
   for (const auto& condition : problem_.prescribed())
     for (const auto node : mesh.node_groups.at(condition.group))
-      hold_[std::size_t(node) * dim_ + condition.component] = Hold::Prescribed;
+      hold_[std::size_t(node) * dim_ + condition.component] =
+          condition.value.is_constant() && condition.value(0.0) == 0.0 ? Hold::Fixed : Hold::Prescribed;
   for (const auto& tied : layout_.tied())
     for (const auto node : mesh.node_groups.at(tied.group))
       hold_[std::size_t(node) * dim_ + tied.component] = Hold::Tied;
+}
+
+/// Collective.
+void MortarTransform::leave_out_held() {
+  std::vector<std::vector<std::int32_t>> bare;
+  for (auto* pair : pairs_)
+    bare.push_back(pair->leave_out(find_held_nodes(*pair)));
+  together(layout_.mesh().comm, [&] {
+    for (std::size_t p = 0; p < pairs_.size(); ++p)
+      for (const auto facet : bare[p])
+        throw UserError("the contact pair '" + pairs_[p]->pair().name + "' with " + enforce_text(*pairs_[p]) +
+                        ": all nodes of its slave facet at " + node_text(pairs_[p]->slave().facet(facet)[0]) +
+                        " have prescribed displacements or resultants along the contact normal" +
+                        (pairs_[p]->friction() ? " or across it, where friction acts" : "") +
+                        ", so that contact forces cannot be told from those of the supports. Exchange slave and "
+                        "master, or use `enforce: {semismooth: {}}`.");
+  });
+}
+
+/// Nodes that a support holds along the normal; with friction also those that it holds across, unless it is a plane of
+/// symmetry, where nothing slides: the support is at rest there, and so is the master in that direction. Collective.
+std::vector<std::uint8_t> MortarTransform::find_held_nodes(const MortarForm& pair) const {
+  const auto& mesh = layout_.mesh();
+  const auto planes = symmetry_planes(pair);
+  const auto* rigid = std::get_if<RigidMaster>(&pair.pair().master);
+  const auto is_symmetry = [&](std::size_t place, int c) {
+    const auto node = pair.nodes().nodes[place];
+    if (hold(node, c) != Hold::Fixed) return false;
+    if (rigid) return !rigid->displacement[c].has_value();
+    const double reach = same_plane * pair.constraints()[place].size;
+    return std::any_of(planes.begin(), planes.end(), [&](const auto& plane) {
+      return plane[0] == c && std::abs(plane[1] - mesh.position(node)[c]) <= reach;
+    });
+  };
+  std::vector<std::uint8_t> held(pair.nodes().nodes.size(), 0);
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (pair.constraints()[i].weight == 0.0) continue;
+    held[i] = !frame(pair, i).bounded;
+    for (int c = 0; pair.friction() && c < dim_; ++c)
+      if (hold(pair.nodes().nodes[i], c) != Hold::Free && !is_symmetry(i, c)) held[i] = 1;
+  }
+  return held;
+}
+
+/// Component and coordinate of each plane in which nodes of a frictional pair's master are fixed in the direction
+/// across it, from all ranks. Collective.
+std::vector<std::array<double, 2>> MortarTransform::symmetry_planes(const MortarForm& pair) const {
+  const auto* master = std::get_if<std::string>(&pair.pair().master);
+  if (!master || !pair.friction()) return {};
+  const auto& mesh = layout_.mesh();
+  std::vector<std::array<double, 2>> mine;
+  for (const auto node : mesh.node_groups.at(*master))
+    for (int c = 0; c < dim_; ++c) {
+      const std::array<double, 2> plane = {double(c), mesh.position(node)[c]};
+      if (hold(node, c) == Hold::Fixed && std::find(mine.begin(), mine.end(), plane) == mine.end())
+        mine.push_back(plane);
+    }
+  const int size = static_cast<int>(2 * mine.size());
+  int ranks = 1;
+  MPI_Comm_size(mesh.comm, &ranks);
+  std::vector<int> sizes(ranks), offsets(ranks + 1, 0);
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, mesh.comm);
+  std::partial_sum(sizes.begin(), sizes.end(), offsets.begin() + 1);
+  std::vector<std::array<double, 2>> all(offsets.back() / 2);
+  MPI_Allgatherv(mine.data(), size, MPI_DOUBLE, all.data(), sizes.data(), offsets.data(), MPI_DOUBLE, mesh.comm);
+  return all;
 }
 
 std::string MortarTransform::node_text(std::int32_t node) const {
@@ -89,14 +160,6 @@ std::string MortarTransform::node_text(std::int32_t node) const {
 
 void MortarTransform::check_pairs() const {
   const auto& mesh = layout_.mesh();
-  std::vector<double> bounded(pairs_.size(), 0.0), covered(pairs_.size(), 0.0);
-  for (std::size_t p = 0; p < pairs_.size(); ++p)
-    for (std::size_t i = 0; i < pairs_[p]->nodes().nodes.size(); ++i) {
-      covered[p] += pairs_[p]->constraints()[i].weight > 0.0;
-      bounded[p] += frame(*pairs_[p], i).bounded;
-    }
-  for (auto* counts : {&bounded, &covered})
-    MPI_Allreduce(MPI_IN_PLACE, counts->data(), static_cast<int>(pairs_.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
   together(mesh.comm, [&] {
     std::vector<const MortarForm*> owner(mesh.num_local(), nullptr);
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
@@ -105,7 +168,6 @@ void MortarTransform::check_pairs() const {
       for (std::size_t i = 0; i < pair.nodes().nodes.size(); ++i) {
         const auto node = pair.nodes().nodes[i];
         if (pair.constraints()[i].weight == 0.0) continue;
-        check_tied(pair, i);
         if (!frame(pair, i).bounded) continue;
         if (const auto* other = std::exchange(owner[node], &pair))
           throw UserError("the contact pairs '" + other->pair().name + "' and '" + name + "' with " +
@@ -113,11 +175,6 @@ void MortarTransform::check_pairs() const {
                           ", which can have one master only. Leave a facet between the slave surfaces, exchange " +
                           "slave and master of one pair, or use `enforce: {semismooth: {}}`.");
       }
-      if (covered[p] > 0.0 && bounded[p] == 0.0)
-        throw UserError("the contact pair '" + name + "' with " + enforce_text(pair) +
-                        ": all nodes of its slave surface '" + pair.pair().slave +
-                        "' have their displacement along the contact normal prescribed. Exchange " +
-                        "slave and master, or use `enforce: {semismooth: {}}`.");
     }
   });
 }
@@ -130,21 +187,6 @@ std::array<double, 3> NodeFrame::axis(int component) const {
   for (int r = 0; r < 3 && square > 0.0; ++r)
     axis[r] -= 2.0 * mirror[r] * mirror[component] / square;
   return axis;
-}
-
-/// A component that a group shares has no unknown of its own to be replaced by a relative motion.
-void MortarTransform::check_tied(const MortarForm& pair, std::size_t i) const {
-  const auto node = pair.nodes().nodes[i];
-  const bool is_bounded = frame(pair, i).bounded;
-  for (int c = 0; c < dim_; ++c) {
-    if (hold(node, c) != Hold::Tied) continue;
-    const bool along = !is_bounded && std::abs(pair.constraints()[i].normal[c]) > least_free_normal;
-    if (along || pair.pair().friction)
-      throw UserError("the contact pair '" + pair.pair().name + "' with " + enforce_text(pair) +
-                      ": its slave node at " + node_text(node) + " moves with a group that has a resultant " +
-                      (along ? "along the contact normal" : "across the contact normal, where friction acts") +
-                      ". Exchange slave and master, or use `enforce: {semismooth: {}}`.");
-  }
 }
 
 NodeFrame MortarTransform::frame(const MortarForm& pair, std::size_t place) const {
@@ -218,29 +260,37 @@ MatHandle MortarTransform::reflections() const {
   return assemble(entries);
 }
 
-/// Masters' part of N: rows of the free components.
-void MortarTransform::couple_to_master(const MortarForm& pair, Entries& entries) const {
-  const auto* master = pair.master();
-  if (!master) return;
-  const auto rows = pair.master_rows();
+/// Adds to the rows of N of a slave node's free components how far a displacement at `columns`, dim of them, moves its
+/// control.
+void MortarTransform::couple(const MortarForm& pair, std::size_t i, std::span<const PetscInt> columns,
+                             double coefficient, Entries& entries) const {
   const auto p = static_cast<std::size_t>(std::find(pairs_.begin(), pairs_.end(), &pair) - pairs_.begin());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto& frame = frames_[p][i];
-    if (!frame.bounded) continue;
-    const auto node = pair.nodes().nodes[i];
-    for (int r = 0; r < dim_; ++r) {
-      if (hold(node, r) != Hold::Free) continue;
-      const PetscInt row = layout_.equation(node, r);
-      for (const auto& [other, coefficient] : rows[i]) {
-        const auto columns = master->equations(other);
-        entries.add(row, columns[r], coefficient);
-        for (int c = 0; c < dim_; ++c)
-          if (hold(node, c) != Hold::Free)
-            entries.add(row, columns[c],
-                        coefficient * frame.normal[r] * pair.constraints()[i].normal[c] / frame.length);
-      }
-    }
+  const auto& frame = frames_[p][i];
+  if (!frame.bounded) return;
+  const auto node = pair.nodes().nodes[i];
+  for (int r = 0; r < dim_; ++r) {
+    if (!frame.is_free[r]) continue;
+    const PetscInt row = layout_.equation(node, r);
+    entries.add(row, columns[r], coefficient);
+    for (int c = 0; c < dim_; ++c)
+      if (!frame.is_free[c])
+        entries.add(row, columns[c], coefficient * frame.normal[r] * pair.constraints()[i].normal[c] / frame.length);
   }
+}
+
+/// Masters' part of N.
+void MortarTransform::couple_to_master(const MortarForm& pair, Entries& entries) const {
+  if (!pair.master()) return;
+  const auto rows = pair.master_rows();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const auto& [other, coefficient] : rows[i])
+      couple(pair, i, pair.master()->equations(other), coefficient, entries);
+}
+
+/// Part of N by slave nodes that are left out.
+void MortarTransform::couple_to_left_out(const MortarForm& pair, Entries& entries) const {
+  for (const auto& [place, node, coefficient] : pair.left_out_rows())
+    couple(pair, place, layout_.equations().subspan(std::size_t(node) * dim_, dim_), -coefficient, entries);
 }
 
 /// Part of N by the held components of the slave nodes themselves: −c_held with c in terms of nodal values. Facets that
@@ -272,6 +322,7 @@ MatHandle MortarTransform::couplings() const {
   Entries entries;
   for (const auto* pair : pairs_) {
     couple_to_master(*pair, entries);
+    couple_to_left_out(*pair, entries);
     couple_to_held(*pair, entries);
   }
   return assemble(entries);
@@ -365,12 +416,13 @@ void MortarTransform::set_bounds() {
     for (std::size_t i = 0; i < frames_[p].size(); ++i) {
       const auto node = pairs_[p]->nodes().nodes[i];
       const auto& frame = frames_[p][i];
+      const auto& constraint = pairs_[p]->constraints()[i];
       if (frame.bounded && node < layout_.mesh().num_owned)
-        values[PetscInt(node) * dim_ + frame.host] = -pairs_[p]->constraints()[i].gap / frame.length;
+        values[PetscInt(node) * dim_ + frame.host] = -constraint.gap / (constraint.leverage() * frame.length);
     }
 }
 
-/// Work: f δû_h = λ D δgap = λ D |ñ| δû_h.
+/// Work: f δû_h = λ ∫ ψ δgap = λ D |ñ| δû_h.
 void MortarTransform::hold_forces(Vec forces) {
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     auto& pair = *pairs_[p];

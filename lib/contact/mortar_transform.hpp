@@ -28,9 +28,9 @@ struct NodeFrame {
 
 class MortarTransform : public BoundedUnknowns {
  public:
-  /// The forms belong to the problem, which must outlive this object. Throws UserError where two pairs would bind the
-  /// same slave node, where a resultant holds a slave node along its normal, or with friction in any direction, where
-  /// no node of a pair is free to move along its normal, and where pairs form a ring. Collective.
+  /// The forms belong to the problem, which must outlive this object. Leaves out slave nodes whose
+  /// support hides the contact force (MortarForm::leave_out). Throws UserError where two pairs would bind the same
+  /// slave node, where a slave facet has no node left, and where pairs form a ring. Collective.
   MortarTransform(const Problem& problem, std::vector<MortarForm*> pairs);
 
   bool update(double time) override;
@@ -45,17 +45,23 @@ class MortarTransform : public BoundedUnknowns {
   const std::vector<NodeFrame>& frames(std::size_t p) const { return frames_[p]; }
 
  private:
-  enum class Hold : std::uint8_t { Free, Prescribed, Tied };
+  /// Fixed: prescribed to stay where it is.
+  enum class Hold : std::uint8_t { Free, Fixed, Prescribed, Tied };
   struct Entries; // of a matrix, to be summed up
   NodeFrame frame(const MortarForm& pair, std::size_t place) const;
   Hold hold(std::int32_t node, int component) const { return hold_[std::size_t(node) * dim_ + component]; }
   void find_held();
+  void leave_out_held();
+  std::vector<std::uint8_t> find_held_nodes(const MortarForm& pair) const;
+  std::vector<std::array<double, 2>> symmetry_planes(const MortarForm& pair) const;
   void check_pairs() const;
-  void check_tied(const MortarForm& pair, std::size_t place) const;
   void build();
   MatHandle reflections() const;
   MatHandle couplings() const;
+  void couple(const MortarForm& pair, std::size_t place, std::span<const PetscInt> columns, double coefficient,
+              Entries& entries) const;
   void couple_to_master(const MortarForm& pair, Entries& entries) const;
+  void couple_to_left_out(const MortarForm& pair, Entries& entries) const;
   void couple_to_held(const MortarForm& pair, Entries& entries) const;
   enum class Direction : std::uint8_t { ToNodes, ToControls };
   MatHandle control_change(Direction direction) const;
