@@ -94,6 +94,36 @@ def error_time_figure(study, outcomes):
     return figure
 
 
+def error_cost_figure(study, outcomes):
+    """A row a quantity with a reference: its error against unknowns and against CPU time, a line for each sweep."""
+    quantities = [quantity for quantity in study.quantities if quantity.reference and comparable(outcomes, quantity)]
+    quantities = quantities[:MAX_PANELS]
+    if not quantities:
+        return None
+    costs = {"displacement and contact unknowns": lambda outcome: outcome.unknowns,
+             "CPU time in s, all ranks": lambda outcome: median(outcome.cpu)}
+    figure, panels = plt.subplots(len(quantities), 2, squeeze=False, layout="constrained",
+                                  figsize=(11.2, 3.6 * len(quantities) + 0.4))
+    for row, quantity in zip(panels, quantities):
+        for panel, (label, cost) in zip(row, costs.items()):
+            for i, name in enumerate(study.sweeps):
+                mine = sorted((cost(outcome), outcome.errors[quantity.name]) for outcome in comparable(outcomes, quantity)
+                              if name in outcome.variant.sweeps and outcome.errors[quantity.name] > 0.0)
+                if mine:
+                    panel.plot(*zip(*mine), LINES[i % len(LINES)], marker=MARKERS[i % len(MARKERS)], ms=5, lw=1.0,
+                               color=COLOURS[i % len(COLOURS)], label=name)
+            panel.set_xscale("log")
+            panel.set_yscale("log")
+            cut_round_off(panel)
+            panel.set_xlabel(label)
+            panel.set_ylabel("absolute error" if is_absolute(outcomes, quantity) else "relative error")
+            panel.set_title(quantity.label)
+            panel.grid(alpha=0.3)
+    panels.flat[0].legend(fontsize=8)
+    figure.suptitle(study.title)
+    return figure
+
+
 def knob_axis(panel, knob, values):
     """Numbers on a logarithmic axis when they are positive, words one after the other. Returns value -> abscissa."""
     numbers = [number(value) for value in values]

@@ -8,6 +8,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import adapt_cases
 import block_cases
 import friction_cases
 import hertz_cases
@@ -25,6 +26,7 @@ CASES = {
     **block_cases.CASES,
     **vi_cases.CASES,
     **obstacle_cases.CASES,
+    **adapt_cases.CASES,
 }
 for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case

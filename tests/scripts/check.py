@@ -94,7 +94,7 @@ def study(case):
     words = (folder / "words.md").read_text(encoding="utf-8")
     case.expect("the words name it", "snes_max_it 1" in words.split("Not in the comparison")[-1], words)
     case.expect("and that the error of a zero reference is absolute", "the error is absolute" in words, words)
-    for name in ("error_time.png", "knobs.png"):
+    for name in ("error_time.png", "error_cost.png", "knobs.png"):
         case.expect(f"{name} is a picture", (folder / name).read_bytes()[:8] == b"\x89PNG\r\n\x1a\n")
 
     for limit, word in (({"time_limit": 0.1}, "timed out"), ({"memory_limit": 40}, "out of memory")):
