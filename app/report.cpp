@@ -158,7 +158,7 @@ nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds) {
   double timed = 0.0;
   // Ranks go through the same phases; one that a rank never entered counts as zero there.
   for (const char* phase : {"mesh", "set up", "search", "pattern", "bulk", "loads", "support", "contact", "matrix",
-                            "linear solver", "certificate", "output", "error estimate"}) {
+                            "factorization", "linear solver", "certificate", "output", "error estimate"}) {
     const auto& seconds = PhaseTimer::of_run().seconds();
     const auto found = seconds.find(phase);
     double sum = found == seconds.end() ? 0.0 : found->second;
