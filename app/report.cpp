@@ -161,8 +161,9 @@ nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds) {
   nlohmann::ordered_json phases;
   double timed = 0.0;
   // Ranks go through the same phases; one that a rank never entered counts as zero there.
-  for (const char* phase : {"mesh", "set up", "search", "pattern", "bulk", "loads", "support", "stabilization",
-                            "contact", "matrix", "linear solver", "certificate", "output", "error estimate"}) {
+  for (const char* phase :
+       {"mesh", "set up", "search", "pattern", "bulk", "loads", "support", "stabilization", "contact", "matrix",
+        "factorization", "linear solver", "certificate", "output", "error estimate"}) {
     const auto& seconds = PhaseTimer::of_run().seconds();
     const auto found = seconds.find(phase);
     double sum = found == seconds.end() ? 0.0 : found->second;

@@ -245,7 +245,12 @@ def check_names(reader, constants, quantities):
 
 def read_study(path, schema):
     """The study in a file, checked against the schema of decks. Errors: StudyError."""
-    path, reader, content = Path(path), Reader(path), read_yaml(path)
+    return study_of(path, read_yaml(path), schema)
+
+
+def study_of(path, content, schema):
+    """The study with this content; `path` is where its deck is found from and what messages name."""
+    path, reader = Path(path), Reader(path)
     reader.only("", content, ("title", "deck", "ranks", "repetitions", "seed", "time_limit", "memory_limit", "settings",
                               "constants", "quantities", "sweeps"))
     for key in ("deck", "quantities", "sweeps"):

@@ -234,6 +234,14 @@ class Runs:
             shutil.rmtree(folder, ignore_errors=True)
         return record
 
+    def mention_others(self, variants, deck_folder, say):
+        """Says when there are folders of runs that are none of these."""
+        places = [self.place(variant, deck_folder) for variant in variants]
+        others = {path for path in (self.folder / "variants").glob("*") if path not in places}
+        if others:
+            say(f"{len(others)} folders in {self.folder / 'variants'} are of other decks, meshes or builds of the "
+                "program, and are left alone")
+
     def all(self, variants, repetitions, seed, deck_folder, say):
         """Runs what has not been run, in random order. A variant that fails is not repeated."""
         order = [(variant, repetition) for variant in variants for repetition in range(1, repetitions + 1)]
@@ -241,10 +249,6 @@ class Runs:
         places = [self.place(variant, deck_folder) for variant in variants]
         kept = {id(variant): self.records(place) for variant, place in zip(variants, places)}
         missing = [(variant, repetition) for variant, repetition in order if repetition not in kept[id(variant)]]
-        others = {path for path in (self.folder / "variants").glob("*") if path not in places}
-        if others:
-            say(f"{len(others)} folders in {self.folder / 'variants'} are of other decks, meshes or builds of the "
-                "program, and are left alone")
         if len(missing) < len(order):
             say(f"{len(order) - len(missing)} of {len(order)} runs are there from before")
         for at, (variant, repetition) in enumerate(missing, 1):
