@@ -221,6 +221,41 @@ void bring_to_order(GmshSession& session, const MeshSource& source, std::optiona
               [&] { gmsh::model::mesh::setOrder(*order); });
 }
 
+/// Whether the Jacobian of a cell has both signs, or vanishes, at its nodes.
+bool has_twisted_cells(int dim) {
+  std::vector<int> types;
+  gmsh::model::mesh::getElementTypes(types, dim);
+  for (const int type : types) {
+    std::string name;
+    int cell_dim = 0, order = 0, nodes = 0, corners = 0;
+    std::vector<double> local, places, jacobians, determinants, unused;
+    gmsh::model::mesh::getElementProperties(type, name, cell_dim, order, nodes, local, corners);
+    for (int node = 0; node < nodes; ++node) // gmsh wants three coordinates of each
+      for (int c = 0; c < 3; ++c)
+        places.push_back(c < dim ? local[std::size_t(node) * dim + c] : 0.0);
+    gmsh::model::mesh::getJacobians(type, places, jacobians, determinants, unused);
+    for (std::size_t cell = 0; cell < determinants.size(); cell += nodes) {
+      double smallest = 0.0, largest = 0.0;
+      for (std::size_t at = cell; at < cell + nodes; ++at) {
+        const double* j = &jacobians[9 * at]; // gmsh's determinant of a surface has no sign
+        const double determinant = dim == 2 ? j[0] * j[4] - j[1] * j[3] : determinants[at];
+        smallest = at == cell ? determinant : std::min(smallest, determinant);
+        largest = at == cell ? determinant : std::max(largest, determinant);
+      }
+      if (smallest <= 0.0 && largest >= 0.0) return true;
+    }
+  }
+  return false;
+}
+
+/// In cells of order 2 at a curved boundary only the nodes on it have moved there, and thin cells turn over. Lets the
+/// nodes inside follow like those of an elastic body. What that does not mend is refused later with its place.
+void relax_curved_cells(GmshSession& session, const MeshSource& source) {
+  if (!has_twisted_cells(gmsh::model::getDimension())) return;
+  session.run("The curved cells of mesh file " + in_quotes(source.file) + " cannot be mended",
+              [] { gmsh::model::mesh::optimize("HighOrderElastic"); });
+}
+
 } // namespace
 
 GmshSession::GmshSession(const std::map<std::string, double>& parameters) {
@@ -273,6 +308,7 @@ DeclaredGroups load_model(GmshSession& session, const MeshSource& source) {
   const auto orders = element_orders();
   if (script || (!orders.empty() && *orders.rbegin() <= 2))
     bring_to_order(session, source, script ? source.order.value_or(1) : source.order);
+  if (script && source.order == 2) relax_curved_cells(session, source);
   return groups;
 }
 

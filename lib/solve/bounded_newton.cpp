@@ -10,6 +10,8 @@ namespace amontons {
 namespace {
 
 constexpr int most_halvings = 30;
+/// Unknowns in 3D above which multigrid beats factorizations here: every iteration has another reduced matrix to factor.
+constexpr PetscInt multigrid_from_3d = 100'000;
 /// Part of the promised fall of energy that a shortened step must bring (Armijo).
 constexpr double least_fall = 1e-4;
 
@@ -30,6 +32,8 @@ std::string choose_bounded_solver(const Problem& problem) {
     default_option("-pc_type", PCLU);
   }
   default_option("-snes_linesearch_type", SNESLINESEARCHSHELL);
+  if (problem.layout().dim() == 3 && problem.layout().num_global() > multigrid_from_3d)
+    default_option("-pc_type", PCGAMG);
   return choose_linear_solver(problem) + " on " + (is_semismooth() ? "semismooth" : "reduced") + " systems";
 }
 

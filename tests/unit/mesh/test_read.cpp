@@ -204,6 +204,34 @@ TEST_CASE("a .msh of one order is brought to the other with straight edges") {
   }
 }
 
+TEST_CASE("thin cells of order 2 under a curved boundary do not turn over: those inside follow it") {
+  // A 1 x 0.6 block with a round dent in its top, 0.134 deep, in one column of cells that are 0.05 high; extruded in
+  // 3D.
+  const std::string block =
+      "DefineConstant[ solid = 0 ];\n"
+      "Point(1) = {-0.5, -0.6, 0}; Point(2) = {0.5, -0.6, 0}; Point(3) = {0.5, 0, 0}; Point(4) = {-0.5, 0, 0};\n"
+      "Point(5) = {0, Sqrt(0.75), 0};\n"
+      "Line(1) = {1, 2}; Line(2) = {2, 3}; Circle(3) = {3, 5, 4}; Line(4) = {4, 1};\n"
+      "Curve Loop(1) = {1:4}; Plane Surface(1) = {1};\n"
+      "Transfinite Curve{1, 3} = 2; Transfinite Curve{2, 4} = 13; Transfinite Surface{1}; Recombine Surface{1};\n"
+      "If (solid)\n v[] = Extrude{0, 0, 1}{ Surface{1}; Layers{1}; Recombine; };\n Physical Volume(\"block\") = "
+      "{v[1]};\n"
+      "Else\n Physical Surface(\"block\") = {1};\nEndIf\n";
+  const double dent = 1.0 - std::sqrt(0.75);
+  const TemporaryFolder folder;
+  const auto file = folder.write("block.geo", block);
+  for (const double solid : {0.0, 1.0}) {
+    CAPTURE(solid);
+    const auto raw = read_mesh({file, {{"solid", solid}}, 2}); // refuses cells that are turned over
+    CHECK(raw.num_cells() == 12);
+    CHECK(raw_volume_on_self(raw) == Approx(0.6 - 2.0 / 3.0 * dent).epsilon(1e-9)); // the arc is a parabola
+    double lowest = 1.0;
+    for (std::size_t i = 0; i + 2 < raw.coordinates.size(); i += 3)
+      if (std::abs(raw.coordinates[i]) < 1e-6) lowest = std::min(lowest, std::abs(raw.coordinates[i + 1] + dent));
+    CHECK(lowest < 1e-9); // its middle is where it was
+  }
+}
+
 TEST_CASE("second-order geometry keeps its accuracy under refinement") {
   // An arc of angle a replaced by the parabola through its ends and middle: the area is wrong by O(a^5), so that of n
   // arcs together falls by 16 when n is doubled. Refinement keeps the shape that the coarse cells describe.
