@@ -156,7 +156,7 @@ class Runs:
     def check(self, variant, deck_folder):
         """Asks `amontons check` whether the deck is right. Errors: StudyError with what it says."""
         place = self.place(variant, deck_folder)
-        if (place / "checked").exists() or self.records(place):
+        if (place / "checked").exists():
             return
         place.mkdir(parents=True, exist_ok=True)
         deck = place / "deck.yaml"
@@ -167,7 +167,16 @@ class Runs:
             text = done.stderr.strip().replace(str(deck), "the deck")
             shutil.rmtree(place)
             raise StudyError(f"the deck with {setting_text(variant.knobs)} is wrong:\n{text}")
-        (place / "checked").touch()
+        (place / "checked").write_text(done.stdout, encoding="utf-8")
+
+    def checked_unknowns(self, variant, deck_folder):
+        """The unknowns that `amontons check` has counted for a variant; None when it was not asked."""
+        try:
+            text = (self.place(variant, deck_folder) / "checked").read_text(encoding="utf-8")
+        except OSError:
+            return None
+        found = re.search(r"unknowns (\d+)", text)
+        return int(found[1]) if found else None
 
     def attempt(self, variant, folder):
         """One run in `folder`; returns its exit status (None: ended by us), outcome, message and wall seconds."""

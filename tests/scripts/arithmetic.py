@@ -16,6 +16,7 @@ TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "scripts"))
 import deck_edit  # noqa: E402
 import expressions  # noqa: E402
+import plan_models  # noqa: E402
 import study_analysis  # noqa: E402
 import study_file  # noqa: E402
 import study_results  # noqa: E402
@@ -266,6 +267,48 @@ class Words(unittest.TestCase):
             study_results.set_error(outcome, study.quantities[0], outcome.values["q"], 0.0)
         words = study_words.paragraph(study, outcomes, [], {})
         self.assertIn("the error is absolute; the smallest is 0.04 with h 0.2", words)
+
+
+class Plans(unittest.TestCase):
+    def test_power_law(self):
+        law = plan_models.power_law([0.4, 0.2, 0.1], [3 * 0.4**2, 3 * 0.2**2, 3 * 0.1**2])
+        self.assertAlmostEqual(law(0.05), 3 * 0.05**2)
+        self.assertAlmostEqual(law.inverse(3e-4), 0.01)
+        # What dies out on finer meshes is seen by the first point only.
+        law = plan_models.power_law([4.0, 0.2, 0.1], [99.0, 0.2, 0.1])
+        self.assertAlmostEqual(law.exponent, 1.0)
+        self.assertIsNone(plan_models.power_law([0.2, 0.1], [2.0, 1.0]))
+        self.assertIsNone(plan_models.power_law([0.4, 0.2, 0.1], [1.0, 1.0, 1.0]))
+
+    def test_cost_law(self):
+        unknowns = [1000, 4000, 16000]
+        law = plan_models.cost_law(unknowns, [0.5 + 2e-5 * n**1.2 for n in unknowns], 1.2)
+        self.assertAlmostEqual(law.start, 0.5)
+        self.assertAlmostEqual(law(1e5), 0.5 + 2e-5 * 1e5**1.2)
+        self.assertAlmostEqual(law.inverse(law(5e4)), 5e4, delta=1.0)
+        constant = plan_models.cost_law(unknowns, [2.0, 2.0, 1.0], 1.2)  # never falls with the unknowns
+        self.assertEqual(constant.rate, 0.0)
+        self.assertGreater(constant(1e6), 0.0)
+
+    def test_errors_of_values(self):
+        found = plan_models.errors_of_values([0.4, 0.2, 0.1], [5.0 + 0.4**1.5, 5.0 + 0.2**1.5, 5.0 + 0.1**1.5])
+        for error, size in zip(found, (0.4, 0.2, 0.1)):
+            self.assertAlmostEqual(error, size**1.5 / 5.0, places=9)
+        found = plan_models.errors_of_values([0.4, 0.2, 0.1], [5.0, 5.1, 5.0])  # no order: at least the last change
+        self.assertAlmostEqual(min(found), 0.1 / 5.0)
+
+    def test_increments(self):
+        exact = {n: [2.0 + 0.6 / n, 1.0] for n in (1, 4, 10, 20)}  # off by 0.3 / n of the value 2
+        found, error = plan_models.fewest_increments(exact, 0.1, 20)
+        self.assertEqual(found, 4)
+        self.assertAlmostEqual(error, 0.3 / 4, delta=0.01)
+        found, error = plan_models.fewest_increments(exact, 0.02, 20)
+        self.assertEqual(found, 20)
+        self.assertLess(error, 0.02)
+        found, _ = plan_models.fewest_increments(exact, 0.001, 20)
+        self.assertAlmostEqual(found, 300, delta=10)
+        self.assertEqual(plan_models.fewest_increments({1: None, 5: [1.0, 1.0], 10: [1.0, 1.0]}, 0.01, 10), (5, 0.0))
+        self.assertEqual(plan_models.fewest_increments({1: None, 5: [1.0]}, 0.01, 5), (5, None))
 
 
 class Call(unittest.TestCase):

@@ -174,6 +174,71 @@ def effects(case):
     case.expect("the words tell", "| friction of interface |" in (folder / "effects.md").read_text(encoding="utf-8"))
 
 
+def with_growth(case):
+    """The deck of hertz_2d with the growth of its cells in it, so that both can be scaled."""
+    deck = load_deck("hertz_2d")
+    deck["mesh"]["file"] = str(TOP / "inputs/hertz_2d/hertz_2d.geo")
+    deck["mesh"]["parameters"]["growth"] = 0.25
+    path = case.folder / "hertz.yaml"
+    path.write_text(yaml.safe_dump(deck, sort_keys=False), encoding="utf-8")
+    return path
+
+
+def plan(case):
+    """What is predicted against the run of the deck that is written: error, time and memory within a factor of two."""
+    for deck, words, error in ((with_growth(case), ("--size", "h,growth"), 0.06),
+                               (TOP / "inputs/cattaneo_mindlin_2d/cattaneo_mindlin_2d.yaml", (), 0.06)):
+        new, out = case.folder / f"{deck.stem}_planned.yaml", case.folder / deck.stem
+        status, text = case.run("plan", deck, *words, "--error", error, "--write", new, "--out", out, "--program",
+                                case.program)
+        case.expect(f"{deck.stem}: planned", status == 0, text)
+        planned = json.loads((out / "plan.json").read_text(encoding="utf-8"))
+        summary = run_deck(case, new)
+        found = {"error": summary["errors"]["discretization"]["relative"],
+                 "unknowns": sum(summary["scene"]["unknowns"].values()),
+                 "cpu_seconds": summary["resources"]["cpu_seconds"],
+                 "memory_bytes": summary["resources"]["peak_memory_bytes"]}
+        for name, value in found.items():
+            print(f"     {name}: predicted {planned[name]:.4g}, found {value:.4g}")
+            case.expect(f"{deck.stem}: {name} within a factor of 2", 0.5 <= value / planned[name] <= 2.0)
+        case.expect(f"{deck.stem}: no more error than a tenth above what was asked for", found["error"] <= 1.1 * error)
+        case.expect(f"{deck.stem}: certified", summary["status"] == 0)
+    # Loading is monotone: the answer does not depend on increments, and the plan takes as few as there can be.
+    steps = yaml.safe_load(new.read_text(encoding="utf-8"))["steps"]
+    case.expect("one increment a step", [step["increments"] for step in steps] == [1] * 4, steps)
+    case.expect("comments stay", "# moves as one; P and Q are exact" in new.read_text(encoding="utf-8"))
+
+
+def run_deck(case, deck):
+    out = case.folder / f"{deck.stem}_run"
+    done = subprocess.run([case.program, str(deck), "--out", str(out)], capture_output=True, text=True, check=False,
+                          cwd=case.folder)
+    case.expect(f"{deck.stem}: the run ends with 0", done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:])
+    return json.loads((out / "summary.json").read_text(encoding="utf-8"))
+
+
+def wrong_plan(case):
+    """Plans that are refused with status 2, a message, and no deck written."""
+    deck, new = with_growth(case), case.folder / "new.yaml"
+    adaptive = TOP / "inputs/hertz_2d_adaptive/hertz_2d_adaptive.yaml"
+    for name, deck_path, words, expected in (
+        ("contradictory targets", deck, ("--size", "h,growth", "--error", 0.03, "--time", "0.5s"), "Raise one of the two"),
+        ("a size that does not rule the error", deck, ("--size", "h"), "Cells elsewhere rule it"),
+        ("a parameter that there is not", deck, ("--size", "hh"), "has no number 'hh'. There are: h, overlap, growth"),
+        ("a parameter that is no size", deck, ("--size", "overlap"), "does not give a finer mesh"),
+        ("a quantity that there is not", deck, ("--size", "h,growth", "--quantity", "contact.joint.force"), "no such number"),
+        ("a time in no unit", deck, ("--time", "10 days"), "write it as 90, 90s, 10min or 2h"),
+        ("an error of zero", deck, ("--error", 0), "between 0 and 1"),
+        ("an adaptive deck", adaptive, (), "finds the mesh itself"),
+        ("no deck", case.folder / "none.yaml", (), "none.yaml cannot be read"),
+    ):
+        status, text = case.run("plan", deck_path, *words, "--write", new, "--out", case.folder / "pilots", "--program",
+                                case.program)
+        case.expect(f"{name}: status 2 and a message", status == 2 and expected in text and "Traceback" not in text,
+                    f"{status} {text}")
+        case.expect(f"{name}: no deck", not new.exists())
+
+
 class Page(html.parser.HTMLParser):
     """What a page holds, and whether its elements close."""
 
@@ -260,7 +325,8 @@ def report(case):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    cases = {"study": study, "resume": resume, "wrong_study": wrong_study, "effects": effects, "report": report}
+    cases = {"study": study, "resume": resume, "wrong_study": wrong_study, "effects": effects, "report": report,
+             "plan": plan, "wrong_plan": wrong_plan}
     parser.add_argument("case", choices=cases)
     parser.add_argument("--program", required=True)
     arguments = parser.parse_args()
