@@ -138,6 +138,7 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
   if (const auto search = backtracking(snes_)) AMT_PETSC(SNESLineSearchBTGetAlpha(search, &sufficient_decrease_));
+  if (PreconditionerLag::applies_to(snes_)) lag_.emplace();
   if (KeptFactorization::is_asked_for(snes_)) kept_factorization_ = std::make_unique<KeptFactorization>(problem, snes_);
   if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
 }
@@ -160,8 +161,9 @@ PetscErrorCode Newton::evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, voi
   return guarded(newton.kept_, [&] {
     newton.ask_for_decrease(!newton.problem_.is_first_guess());
     if (!newton.problem_.tangent(unknowns, matrix)) return;
-    ++newton.factorizations_;
     if (newton.kept_factorization_) newton.kept_factorization_->tangent_changed();
+    if (newton.lag_) newton.lag_->decide(newton.snes_);
+    if (!newton.lag_ || newton.lag_->rebuilds()) ++newton.factorizations_;
   });
 }
 

@@ -4,9 +4,11 @@
 #pragma once
 
 #include "form/problem.hpp"
+#include "solve/preconditioner_lag.hpp"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace amontons {
@@ -70,6 +72,7 @@ class Newton {
       kept_factorization_; // absent unless the problem is large or the options ask for it
   MatHandle matrix_;
   VecHandle residual_;
+  std::optional<PreconditionerLag> lag_; // absent for factorizations
   std::exception_ptr kept_;
   int factorizations_ = 0, least_iterations_ = 0;
   PetscReal sufficient_decrease_ = 0.0; // of a backtracking line search
