@@ -38,7 +38,7 @@ def row_of(task, outcome):
                       ("outer_iterations", "outer"), ("factorizations", "factorizations")):
         if key in summary:
             row[name] = summary[key]
-    for name, error in outcome.errors.items():
+    for name, error in outcome.errors.items() if task.program not in (ELASTIC, FRICTIONLESS) else ():
         row[f"error_{name}"] = error
     for name, share in shares(summary).items():
         row[f"share_{name}"] = share

@@ -277,9 +277,41 @@ double Problem::probe_diagonal(const State& state) {
   return sum;
 }
 
-/// The constant part with the whole pattern in place, kept inside the matrix (MatStoreValues) for later tangents. One
+/// Owned equations that forms without a constant tangent add to, on whichever rank. Collective.
+std::vector<PetscInt> Problem::changing_rows() const {
+  class Marker : public Coupling {
+   public:
+    explicit Marker(Vec flags) : flags_(flags) {}
+    void add(std::span<const PetscInt> equations) override {
+      ones_.assign(equations.size(), 1.0);
+      AMT_PETSC(
+          VecSetValues(flags_, static_cast<PetscInt>(equations.size()), equations.data(), ones_.data(), INSERT_VALUES));
+    }
+
+   private:
+    Vec flags_;
+    std::vector<double> ones_;
+  };
+  const auto flags = layout_.new_vector();
+  Marker marker(flags);
+  for (const auto& form : forms_)
+    if (!form->tangent_is_constant()) form->couple(marker);
+  if (support_) support_->couple(marker);
+  AMT_PETSC(VecAssemblyBegin(flags));
+  AMT_PETSC(VecAssemblyEnd(flags));
+  std::vector<PetscInt> rows;
+  const VecReader values(flags);
+  for (PetscInt i = 0; i < values.size(); ++i)
+    if (values[i] != 0.0) rows.push_back(layout_.first_equation() + i);
+  return rows;
+}
+
+/// The constant part with the whole pattern in place; rows that others add to are kept for later tangents. One
 /// assembly for all: PETSc gives preallocated places away that an assembly finds unused.
 void Problem::assemble_constant(const State& state, Mat matrix) {
+  PetscBool is_assembled = PETSC_FALSE;
+  AMT_PETSC(MatAssembled(matrix, &is_assembled));
+  if (is_assembled) AMT_PETSC(MatZeroEntries(matrix));
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_TRUE));
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_TRUE));
   MatrixTangent tangent(*this, matrix);
@@ -318,7 +350,7 @@ void Problem::assemble_constant(const State& state, Mat matrix) {
   AMT_PETSC(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_FALSE));
-  AMT_PETSC(MatStoreValues(matrix));
+  constant_rows_.store(matrix, changing_rows());
   if (has_constant) AMT_PETSC(MatGetDiagonal(matrix, diagonal_));
   constant_ready_ = true;
 }
@@ -335,7 +367,7 @@ bool Problem::tangent(Vec unknowns, Mat matrix) {
   if (any_rank(coupling_changed)) build_pattern(matrix);
   if (!any_rank(tangent_changed || !tangent_ready_)) return false;
   if (constant_ready_)
-    AMT_PETSC(MatRetrieveValues(matrix));
+    constant_rows_.restore(matrix);
   else
     assemble_constant(state, matrix);
   add_changing(state, matrix);
@@ -353,7 +385,7 @@ std::vector<Switching*> Problem::switching() const {
 
 void Problem::lean_on(Form& support) {
   support_ = &support;
-  tangent_ready_ = false;
+  constant_ready_ = tangent_ready_ = false; // it adds to rows that are not kept
 }
 
 void Problem::stand_alone() {

@@ -4,6 +4,7 @@
 
 #include "base/expression.hpp"
 #include "form/form.hpp"
+#include "form/kept_rows.hpp"
 #include "form/sparsity.hpp"
 #include "form/switching.hpp"
 
@@ -106,6 +107,7 @@ class Problem {
   void build_pattern(Mat matrix);
   double probe_diagonal(const State& state);
   void assemble_constant(const State& state, Mat matrix);
+  std::vector<PetscInt> changing_rows() const;
   bool any_rank(bool mine) const;
   void share_failure(const std::string& mine);
   void add_changing(const State& state, Mat matrix);
@@ -120,6 +122,7 @@ class Problem {
   VecHandle raw_;
   std::vector<double> displacement_;
   double time_ = 0.0, accepted_time_ = 0.0;
+  KeptRows constant_rows_;       // of the constant tangent
   VecHandle diagonal_, scratch_; // of the constant tangent, or where there is none of the first one
   double rounding_ = 0.0;
   double force_scale_ = 0.0, largest_accepted_force_ = 0.0;

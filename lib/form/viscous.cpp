@@ -66,6 +66,14 @@ void ViscousForm::add_residual(const State& state, Residual& residual) {
     residual.nodal()[i] -= forces[i];
 }
 
+void ViscousForm::couple(Coupling& coupling) const {
+  for (std::size_t node = 0; node < weight_.size(); ++node)
+    for (int c = 0; c < layout_.dim(); ++c) {
+      const PetscInt equation = layout_.equation(static_cast<std::int32_t>(node), c);
+      coupling.add({&equation, 1});
+    }
+}
+
 void ViscousForm::add_tangent(const State& state, Tangent& tangent) {
   assembled_ = resistance(state);
   for (std::size_t node = 0; node < weight_.size(); ++node)

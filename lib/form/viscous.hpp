@@ -22,7 +22,7 @@ class ViscousForm : public Form {
               double duration);
 
   const char* name() const override { return "stabilization"; }
-  void couple(Coupling&) const override {}
+  void couple(Coupling& coupling) const override;
   void add_residual(const State& state, Residual& residual) override;
   void add_tangent(const State& state, Tangent& tangent) override;
   bool tangent_changed(const State& state) override { return resistance(state) != assembled_; }

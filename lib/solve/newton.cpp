@@ -231,6 +231,7 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   AMT_PETSC(SNESGetLineSearch(snes_, &search));
   AMT_PETSC(SNESLineSearchGetType(search, &type));
   if (type) chosen_search_ = type;
+  if (PreconditionerLag::applies_to(snes_)) lag_.emplace();
   if (KeptFactorization::is_asked_for(snes_)) kept_factorization_ = std::make_unique<KeptFactorization>(problem, snes_);
   if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
 }
@@ -272,8 +273,9 @@ PetscErrorCode Newton::evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, voi
     const bool is_guess = newton.problem_.is_first_guess();
     ask_for_decrease(newton.snes_, is_guess ? accept_anything : newton.sufficient_decrease_);
     if (!newton.problem_.tangent(unknowns, matrix)) return;
-    ++newton.factorizations_;
     if (newton.kept_factorization_) newton.kept_factorization_->tangent_changed();
+    if (newton.lag_) newton.lag_->decide(newton.snes_);
+    if (!newton.lag_ || newton.lag_->rebuilds()) ++newton.factorizations_;
   });
 }
 

@@ -5,10 +5,12 @@
 
 #include "form/problem.hpp"
 #include "solve/iteration_record.hpp"
+#include "solve/preconditioner_lag.hpp"
 #include "solve/trouble.hpp"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -107,6 +109,7 @@ class Newton {
   IterationRecord record_; // of the running solve
   StatusWatch watch_;
   std::string chosen_search_;
+  std::optional<PreconditionerLag> lag_; // absent for factorizations
   std::exception_ptr kept_;
   int factorizations_ = 0, least_iterations_ = 0;
   PetscReal sufficient_decrease_ = 0.0; // of a backtracking line search

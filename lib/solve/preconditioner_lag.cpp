@@ -1,0 +1,46 @@
+#include "solve/preconditioner_lag.hpp"
+
+#include <cmath>
+
+namespace amontons {
+
+namespace {
+
+/// A set-up of multigrid costs about as much as 20 iterations; one that takes twice as long as it did is replaced.
+constexpr double tolerated_slowdown = 2.5;
+
+} // namespace
+
+bool PreconditionerLag::applies_to(SNES snes) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  PetscBool is_preonly = PETSC_FALSE, is_factorization = PETSC_FALSE;
+  AMT_PETSC(SNESGetKSP(snes, &ksp));
+  AMT_PETSC(KSPGetPC(ksp, &pc));
+  AMT_PETSC(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &is_preonly));
+  AMT_PETSC(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &is_factorization, PCLU, PCCHOLESKY, ""));
+  return !is_preonly && !is_factorization;
+}
+
+void PreconditionerLag::decide(SNES snes) {
+  KSP ksp = nullptr;
+  PetscInt iterations = 0;
+  PetscReal rtol = 0.0;
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  AMT_PETSC(SNESGetKSP(snes, &ksp));
+  AMT_PETSC(KSPGetIterationNumber(ksp, &iterations));
+  AMT_PETSC(KSPGetTolerances(ksp, &rtol, nullptr, nullptr, nullptr));
+  AMT_PETSC(KSPGetConvergedReason(ksp, &reason));
+  // The tolerance of the solve before this one, as Eisenstat and Walker's rule had set it.
+  const double rate = iterations / std::max(0.5, -std::log10(rtol));
+  const bool is_bad = reason < 0 || (first_rate_ > 0.0 && rate > tolerated_slowdown * first_rate_);
+  rebuilds_ = !is_set_up_ || is_bad;
+  if (rebuilds_)
+    first_rate_ = 0.0;
+  else if (first_rate_ == 0.0)
+    first_rate_ = rate;
+  is_set_up_ = true;
+  AMT_PETSC(SNESSetLagPreconditioner(snes, rebuilds_ ? -2 : -1));
+}
+
+} // namespace amontons
