@@ -1,7 +1,5 @@
 #include "increment_solver.hpp"
 
-#include "form/viscous.hpp"
-
 #include <algorithm>
 
 namespace amontons {
@@ -39,6 +37,7 @@ IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted
     bounded_ = std::make_unique<BoundedNewton>(*scene.problem, *scene.bounds, std::move(interrupted));
     return;
   }
+  chosen_rungs(); // a wrong name is found before anything is solved
   linear_solver_ = choose_linear_solver(*scene.problem);
   newton_ = std::make_unique<Newton>(*scene.problem, std::move(interrupted));
   uzawa_ = make_uzawa(scene, *newton_);

@@ -8,6 +8,7 @@
 #include "form/bulk.hpp"
 #include "form/loads.hpp"
 #include "form/problem.hpp"
+#include "form/viscous.hpp"
 #include "mesh/mesh.hpp"
 
 #include <memory>
@@ -24,6 +25,7 @@ struct Scene {
   std::unique_ptr<Problem> problem;
   BulkForm* bulk = nullptr;                      // owned by the problem
   LoadForm* loads = nullptr;                     // absent without loads
+  ViscousForm* stabilization = nullptr;          // absent without stabilization
   std::vector<PairReport*> contacts;             // owned by the problem
   std::unique_ptr<UzawaMultipliers> multipliers; // absent without `uzawa` pairs
   std::unique_ptr<MortarTransform> bounds;       // absent without `vi` pairs
