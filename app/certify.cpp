@@ -55,6 +55,7 @@ Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<Contac
                   .energy = {.stored = ledger.stored_energy(),
                              .dissipated = ledger.dissipated_energy(),
                              .external_work = ledger.external_work(),
+                             .artificial = ledger.artificial_work(),
                              .work_uncertainty = ledger.work_uncertainty(),
                              .virtual_work_defect = ledger.virtual_work_defect(),
                              .virtual_work_scale = ledger.virtual_work_scale()},
@@ -65,7 +66,8 @@ Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<Contac
                                  .energy = deck.energy,
                                  .volume_ratio = deck.volume_ratio,
                                  .friction = deck.friction,
-                                 .slip = deck.slip},
+                                 .slip = deck.slip,
+                                 .artificial = deck.artificial},
                   .force_floor = force_floor,
                   .energy_floor = rounding_strain * force_floor * size,
                   .kinematics = scene.deck.kinematics});

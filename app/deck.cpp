@@ -263,6 +263,19 @@ ObjectRule<AdaptDeck> adapt_rule() {
   return rule;
 }
 
+TaggedRule<StabilizationDeck> stabilization_rule() {
+  ObjectRule<ViscousDeck> viscous;
+  viscous.optional("ratio", &ViscousDeck::ratio, number("1", Range::above(0)),
+                   "Force against a steady motion over the whole run, relative to the elastic forces of a body "
+                   "stretched as far.");
+  TaggedRule<StabilizationDeck> rule;
+  rule.tag("viscous", viscous,
+           "Forces against the velocity of every node: past a limit point the bodies creep to where they are in "
+           "equilibrium again. Take the smallest ratio that gets across; with a ratio ten times as small the results "
+           "should stay the same.");
+  return rule;
+}
+
 ObjectRule<CertificateDeck> certificate_rule() {
   const auto tolerance = [] { return number("1", Range::above_up_to(0, 1)); };
   ObjectRule<CertificateDeck> rule;
@@ -280,7 +293,9 @@ ObjectRule<CertificateDeck> certificate_rule() {
           "Tangential motion of the surfaces that is not the slip claimed, weighted by the shear traction / largest "
           "displacement increment in the scene.")
       .optional("volume_ratio", &CertificateDeck::volume_ratio, number("1", Range::between(0, 0.99)),
-                "Smallest volume ratio det F allowed.");
+                "Smallest volume ratio det F allowed.")
+      .optional("artificial", &CertificateDeck::artificial, tolerance(),
+                "Work that `stabilization` takes / external work.");
   return rule;
 }
 
@@ -331,6 +346,9 @@ Rule<Deck> deck_rule() {
       .optional("contact", &Deck::contact, list_of(Rule<ContactDeck>(contact_rule())),
                 "Pairs of surfaces that may touch.")
       .required("steps", &Deck::steps, list_of(Rule<StepDeck>(step_rule()), 1), "The course of the run in time t.")
+      .optional("stabilization", &Deck::stabilization, stabilization_rule(),
+                "Artificial resistance, to get past limit points (snap-through, buckling). Its work is reported and "
+                "bounded by the certificate's `artificial`. When absent: none, at no cost.")
       .optional("estimate_path_error", &Deck::estimate_path_error, boolean(),
                 "true: every increment is solved in two halves, too, for the estimate of the path error alone; takes "
                 "about three times as long. Steps with a path_tolerance have the estimate anyway.")

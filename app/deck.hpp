@@ -129,6 +129,12 @@ struct AdaptDeck {
   int max_passes = 10;
 };
 
+/// Artificial viscosity (form/viscous.hpp).
+struct ViscousDeck {
+  double ratio = 1e-4;
+};
+using StabilizationDeck = std::variant<ViscousDeck>;
+
 /// Tolerances of the certificate (DESIGN: may be changed, never switched off).
 struct CertificateDeck {
   double penetration = 0.05;     // largest penetration / local facet size
@@ -139,6 +145,7 @@ struct CertificateDeck {
   double friction = 1e-6;        // shear off the law's limit / largest limit; negative part of the frictional work
   double slip = 0.1;             // motion that is not the slip claimed / largest motion in the scene
   double volume_ratio = 0.0;     // smallest det F allowed
+  double artificial = 0.05;      // work of stabilization / external work
 };
 
 struct OutputDeck {
@@ -162,6 +169,7 @@ struct Deck {
   std::map<std::string, Located<VectorDeck>> body_force;
   std::vector<ContactDeck> contact;
   std::vector<StepDeck> steps;
+  std::optional<StabilizationDeck> stabilization; // absent: none
   bool estimate_path_error = false;
   std::optional<AdaptDeck> adapt;
   CertificateDeck certificate;

@@ -1,6 +1,5 @@
 #include "increment_solver.hpp"
 
-#include "form/viscous.hpp"
 #include "solve/kept_factorization.hpp"
 
 #include <algorithm>
@@ -45,6 +44,7 @@ IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted
     condensed_ = std::make_unique<CondensedNewton>(*scene.problem, *scene.conditions, std::move(interrupted));
     return;
   }
+  chosen_rungs(); // a wrong name is found before anything is solved
   linear_solver_ = choose_newton_solver(*scene.problem);
   newton_ = std::make_unique<Newton>(*scene.problem, std::move(interrupted));
   uzawa_ = make_uzawa(scene, *newton_);

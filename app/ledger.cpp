@@ -1,5 +1,6 @@
 // External forces e are what balances the bulk and the contact forms: e = bulk + contact = residual without the loads'
-// part. At supports they are the reactions, elsewhere the applied loads.
+// part; without that of artificial viscosity, too, which acts on the bodies like a load. At supports they are the
+// reactions, elsewhere the applied loads.
 #include "ledger.hpp"
 
 #include <algorithm>
@@ -24,6 +25,10 @@ Ledger::Ledger(Scene& scene)
     if (std::none_of(reactions_.begin(), reactions_.end(),
                      [&](const auto& known) { return known.group == condition.group; }))
       reactions_.push_back({.group = condition.group});
+  if (scene.stabilization) {
+    viscous_ = scene.layout->new_vector();
+    viscous_old_ = scene.layout->new_vector();
+  }
   const auto state = scene.problem->state_at(unknowns_old_);
   for (auto* contact : scene.contacts)
     if (contact->totals(state).largest_penetration > overlap_tolerance) initial_overlap_ = true;
@@ -31,6 +36,13 @@ Ledger::Ledger(Scene& scene)
 
 void Ledger::find_external_forces(Vec unknowns) {
   AMT_PETSC(VecCopy(scene_.problem->raw_residual(), external_));
+  if (scene_.stabilization) {
+    AMT_PETSC(VecSet(viscous_, 0.0));
+    Residual viscous(*scene_.layout, viscous_);
+    scene_.stabilization->add_residual(scene_.problem->state_at(unknowns), viscous);
+    viscous.finish();
+    AMT_PETSC(VecAXPY(external_, -1.0, viscous_));
+  }
   if (!scene_.loads) return;
   AMT_PETSC(VecSet(work_, 0.0));
   Residual loads(*scene_.layout, work_);
@@ -48,6 +60,11 @@ std::vector<double> Ledger::nodal_external_forces(Vec unknowns) {
   const auto state = scene_.problem->state_at(unknowns);
   std::vector<double> forces(state.displacement.size(), 0.0);
   if (scene_.loads) forces = scene_.loads->nodal_forces(state.time);
+  if (scene_.stabilization) {
+    const auto viscous = scene_.stabilization->nodal_forces(state);
+    for (std::size_t i = 0; i < forces.size(); ++i)
+      forces[i] += viscous[i];
+  }
   {
     VecReader raw(scene_.problem->raw_residual());
     for (PetscInt local = 0; local < mesh.num_owned * d; ++local)
@@ -113,6 +130,18 @@ void Ledger::add_bubble_work(Vec unknowns, std::span<double> sums) {
   bubbles_old_ = std::move(bubbles);
 }
 
+/// Σ ½ (f_old + f) · Δu of the forces that the stabilization resists with: by the trapezoidal rule as the external work
+/// that it is a part of.
+void Ledger::take_artificial_work(Vec unknowns) {
+  if (!scene_.stabilization) return;
+  AMT_PETSC(VecWAXPY(work_, -1.0, unknowns_old_, unknowns));
+  PetscScalar now = 0.0, before = 0.0;
+  AMT_PETSC(VecDot(viscous_, work_, &now));
+  AMT_PETSC(VecDot(viscous_old_, work_, &before));
+  artificial_work_ += 0.5 * (now + before);
+  AMT_PETSC(VecCopy(viscous_, viscous_old_));
+}
+
 /// What the trapezoidal work of an increment may be off, sliding apart: ½ Δe·Δu, less what of it is elastic energy of
 /// linear bodies, for which the rule is exact (accuracy/certificate.hpp). Where a body is not linear, Σ ½ |Δe·Δu|.
 double Ledger::trapezoid_error(Vec unknowns, double change, double absolute_change) {
@@ -174,6 +203,7 @@ void Ledger::accept(Vec unknowns) {
     work_uncertainty_ += contact_error + trapezoid_error(unknowns, here[1], here[2]);
   }
   opened_ = true;
+  take_artificial_work(unknowns);
   const double internal_work = scene_.internal_work(unknowns);
   virtual_work_defect_ = here[3] - contact_work - internal_work;
   virtual_work_scale_ = here[4] + std::abs(internal_work);
@@ -192,6 +222,12 @@ void Ledger::save(Checkpoint& checkpoint) const {
   checkpoint.nodal["external_force"] = std::move(forces);
   checkpoint.global["work"] = {external_work_, work_uncertainty_, stored_energy_};
   checkpoint.global["dissipated"] = dissipated_;
+  if (scene_.stabilization) {
+    NodalArray viscous{mesh.dim, std::vector<double>(std::size_t(mesh.num_local()) * mesh.dim)};
+    scene_.layout->gather_displacement(viscous_old_, viscous.values);
+    checkpoint.nodal["viscous_force"] = std::move(viscous);
+    checkpoint.global["artificial_work"] = {artificial_work_};
+  }
   auto& rigid = checkpoint.global["rigid_masters"];
   for (std::size_t i = 0; i < rigid_force_old_.size(); ++i) {
     rigid.insert(rigid.end(), rigid_force_old_[i].begin(), rigid_force_old_[i].end());
@@ -210,6 +246,10 @@ void Ledger::restore(const Checkpoint& checkpoint, Vec unknowns) {
   stored_energy_ = work.at(2);
   bulk_dissipation_ = scene_.bulk_dissipation(unknowns);
   dissipated_ = checkpoint.global.at("dissipated");
+  if (scene_.stabilization && checkpoint.global.contains("artificial_work")) {
+    scene_.layout->put_displacement(checkpoint.nodal.at("viscous_force").values, viscous_old_);
+    artificial_work_ = checkpoint.global.at("artificial_work").at(0);
+  }
   const auto& rigid = checkpoint.global.at("rigid_masters");
   for (std::size_t i = 0; i < rigid_force_old_.size(); ++i) {
     std::copy_n(rigid.begin() + 6 * static_cast<std::ptrdiff_t>(i), 3, rigid_force_old_[i].begin());

@@ -28,7 +28,9 @@ class Ledger {
   void accept(Vec unknowns);
 
   /// ∫ F · du by the trapezoidal rule over the accepted increments: supports, loads and moving rigid masters.
-  double external_work() const { return external_work_; }
+  double external_work() const { return external_work_ + artificial_work_; }
+  /// What of it the stabilization has taken.
+  double artificial_work() const { return artificial_work_; }
   /// How far external_work can be off stored_energy + dissipated_energy for the length of the increments alone; see
   /// EnergyLedger::work_uncertainty.
   double work_uncertainty() const { return work_uncertainty_; }
@@ -56,6 +58,7 @@ class Ledger {
 
  private:
   void find_external_forces(Vec unknowns);
+  void take_artificial_work(Vec unknowns);
   void add_bubble_work(Vec unknowns, std::span<double> sums);
   double trapezoid_error(Vec unknowns, double change, double absolute_change);
   void collect_reactions();
@@ -64,7 +67,9 @@ class Ledger {
   Scene& scene_;
   VecHandle external_, external_old_, unknowns_old_, work_;
   std::vector<std::array<double, 3>> rigid_force_old_, rigid_shift_old_;
-  double external_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0, bulk_dissipation_ = 0.0;
+  VecHandle viscous_, viscous_old_; // residual of the stabilization; absent without
+  double external_work_ = 0.0;      // without what the stabilization takes
+  double artificial_work_ = 0.0, work_uncertainty_ = 0.0, stored_energy_ = 0.0, bulk_dissipation_ = 0.0;
   std::vector<double> dissipated_;
   double virtual_work_defect_ = 0.0, virtual_work_scale_ = 0.0;
   LoadedBubbles bubbles_old_;

@@ -69,6 +69,7 @@ std::vector<std::string> history_columns(const Scene& scene, const Ledger& ledge
       columns.push_back(prefix + "shear_" + axes[c]);
   }
   if (measures_path(scene.deck)) columns.emplace_back("path_error");
+  if (scene.stabilization) columns.emplace_back("energy_artificial");
   for (const char* quantity : {"energy_stored", "energy_dissipated", "energy_external_work", "newton", "linear",
                                "outer", "remedy", "residual", "certified"})
     columns.emplace_back(quantity);
@@ -98,6 +99,7 @@ std::vector<double> history_row(Scene& scene, const Ledger& ledger, const std::v
     row.insert(row.end(), pair.tangential_force.begin(), pair.tangential_force.begin() + d);
   }
   if (measures_path(scene.deck)) row.push_back(report.path_error);
+  if (scene.stabilization) row.push_back(ledger.artificial_work());
   row.insert(row.end(), {ledger.stored_energy(), ledger.dissipated_energy(), ledger.external_work(),
                          double(report.outcome.newton), double(report.outcome.linear), double(report.outcome.outer),
                          double(report.outcome.rung), report.outcome.residual, report.certified ? 1.0 : 0.0});
@@ -250,6 +252,7 @@ nlohmann::ordered_json describe_scene(const Scene& scene) {
   effects["bounded_unknowns"] = scene.bounds != nullptr;
   effects["condensed_multipliers"] = scene.conditions != nullptr;
   effects["loads"] = scene.loads != nullptr;
+  effects["stabilization"] = scene.stabilization != nullptr;
   nlohmann::ordered_json json;
   json["dim"] = mesh.dim;
   json["order"] = mesh.order;

@@ -187,6 +187,7 @@ void restore_state(Scene& scene, Ledger& ledger, const Checkpoint& checkpoint, V
   const auto state = scene.problem->state_at(unknowns);
   for (auto* contact : scene.contacts)
     contact->remember(state);
+  if (scene.stabilization) scene.stabilization->resume(state);
   ledger.restore(checkpoint, unknowns);
 }
 

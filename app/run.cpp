@@ -471,6 +471,7 @@ int Run::finish(int status, const std::string& reason) {
   summary["energy"] = {{"stored", ledger_->stored_energy()},
                        {"dissipated", ledger_->dissipated_energy()},
                        {"external_work", ledger_->external_work()},
+                       {"artificial_work", ledger_->artificial_work()},
                        {"external_work_uncertainty", ledger_->work_uncertainty()}};
   if (path_) summary["path"] = path_->to_json();
   summary["certificate"] = certificate_.to_json();

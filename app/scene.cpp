@@ -259,6 +259,12 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path, 
     forms.push_back(std::move(loads));
   }
   if (!scene->floating.empty()) forms.push_back(std::make_unique<SupportForm>(layout, floating, stiffness));
+  if (deck.stabilization) {
+    const double ratio = std::get<ViscousDeck>(*deck.stabilization).ratio;
+    auto viscous = std::make_unique<ViscousForm>(layout, deck.space, stiffness, ratio, deck.steps.back().to);
+    scene->stabilization = viscous.get();
+    forms.push_back(std::move(viscous));
+  }
   std::vector<ContactForm*> uzawa;
   std::vector<MortarForm*> bounded, condensed;
   for (auto& pair : pairs) {

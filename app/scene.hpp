@@ -9,6 +9,7 @@
 #include "form/loads.hpp"
 #include "form/problem.hpp"
 #include "form/solid.hpp"
+#include "form/viscous.hpp"
 #include "mesh/build.hpp"
 
 #include <memory>
@@ -25,6 +26,7 @@ struct Scene {
   std::unique_ptr<Problem> problem;
   SolidForm* bulk = nullptr;                     // owned by the problem
   LoadForm* loads = nullptr;                     // absent without loads
+  ViscousForm* stabilization = nullptr;          // absent without stabilization
   std::vector<PairReport*> contacts;             // owned by the problem
   std::unique_ptr<UzawaMultipliers> multipliers; // absent without `uzawa` pairs
   std::unique_ptr<MortarTransform> bounds;       // absent without `vi` pairs

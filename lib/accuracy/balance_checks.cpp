@@ -105,6 +105,7 @@ BalanceChecks check_balance(const CertificateInput& input, const std::array<doub
   }
   for (std::size_t c = 0; c < 6; ++c) {
     sums[0][c] += forces.by_rigid[c];
+    if (c >= 3) sums[0][c] -= forces.couple[c];
     for (std::size_t body = 0; body + 1 < rows; ++body)
       sums[1 + first[body]][c] += forces.on_body[body][c];
   }

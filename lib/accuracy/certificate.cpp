@@ -42,10 +42,20 @@ Certificate::Item virtual_work_item(const CertificateInput& input) {
   return at_most("virtual_work", {value, ""}, input.tolerances.energy);
 }
 
+double energy_scale(const CertificateInput& input) {
+  return std::max({std::abs(input.energy.external_work), std::abs(input.energy.stored), input.energy_floor});
+}
+
+Certificate::Item artificial_item(const CertificateInput& input) {
+  return at_most("artificial", {relative(input.energy.artificial, energy_scale(input)), ""},
+                 input.tolerances.artificial);
+}
+
 Certificate::Item energy_item(const CertificateInput& input) {
   const EnergyLedger& energy = input.energy;
-  const double excess = std::abs(energy.external_work - energy.stored - energy.dissipated) - energy.work_uncertainty;
-  const double scale = std::max({std::abs(energy.external_work), std::abs(energy.stored), input.energy_floor});
+  const double gap = energy.external_work - energy.stored - energy.dissipated - energy.artificial;
+  const double excess = std::abs(gap) - energy.work_uncertainty;
+  const double scale = energy_scale(input);
   // Not std::max, which would drop an excess that is not a number.
   return at_most("energy", {excess <= 0.0 ? 0.0 : relative(excess, scale), ""}, input.tolerances.energy);
 }
@@ -69,6 +79,7 @@ Certificate without_numbers(const CertificateTolerances& limits) {
   fail("friction_cone", limits.friction);
   fail("slip", limits.slip);
   fail("dissipation", limits.friction);
+  fail("artificial", limits.artificial);
   return certificate;
 }
 
@@ -123,7 +134,8 @@ Certificate certify(const CertificateInput& input) {
       at_most("missed_contact", overlap, limits.penetration),
       at_most("friction_cone", friction.cone, limits.friction),
       at_most("slip", friction.slip, limits.slip),
-      at_most("dissipation", friction.dissipation, limits.friction)};
+      at_most("dissipation", friction.dissipation, limits.friction),
+      artificial_item(input)};
   return certificate;
 }
 

@@ -23,6 +23,7 @@ struct CertificateTolerances {
   double volume_ratio = 0.0;     // smallest det(I + ∇u) / reference volume
   double friction = 1e-6;        // shear off the law's limit, and negative frictional work, relative (see certify)
   double slip = 0.1;             // tangential motion that is not the slip claimed / largest motion (see certify)
+  double artificial = 0.05;      // work taken by artificial forces / energy scale
 };
 
 /// Energies over all ranks, the same on every rank. All cumulative since the start of the run.
@@ -34,8 +35,11 @@ struct EnergyLedger {
   double dissipated = 0.0;
   /// Σ ½ (f_old + f) · Δu over supports, loads and moving rigid masters.
   double external_work = 0.0;
-  /// Largest |external_work − stored − dissipated| that the length of the increments explains. With f = K u + contact
-  /// forces, K constant (linear elastic bodies), the trapezoidal rule is exact for the bodies, in every increment
+  /// What of the external work artificial forces took (stabilization), by the same rule.
+  double artificial = 0.0;
+  /// Largest |external_work − stored − dissipated − artificial| that the length of the increments explains. With f = K
+  /// u + contact forces, K constant (linear elastic bodies), the trapezoidal rule is exact for the bodies, in every
+  /// increment
   ///   ½ (f_old + f) · Δu = Δ strain energy + Σ over slave points of ½ (σ_old + σ) Δg + ½ (t_old + t) · Δg_t
   ///   Δf · Δu = 2 · strain energy(Δu) + Σ Δσ Δg + Δt · Δg_t,
   /// σ normal traction, t shear traction, g gap and g_t tangential motion of a point. The contact potential ψ(g, λ) is
@@ -85,7 +89,7 @@ struct Certificate {
     std::string where; // the worst place, in words; may be empty
   };
   /// penetration, tension, complementarity, force_balance, moment_balance, body_balance, virtual_work, energy,
-  /// volume_ratio, missed_contact, friction_cone, slip, dissipation: always all of them, in this order.
+  /// volume_ratio, missed_contact, friction_cone, slip, dissipation, artificial: always all of them, in this order.
   std::vector<Item> items;
   bool passed() const;
 };

@@ -17,6 +17,7 @@ struct GapChecks {
 struct ClaimedForces {
   std::vector<std::array<double, 6>> on_body;
   std::array<double, 6> by_rigid{}; // sum over the pairs with a rigid master: an outer force
+  std::array<double, 6> couple{};   // of the shear on slave and master, which lie apart before they touch
   double absolute = 0.0;            // Σ |traction| w
 };
 

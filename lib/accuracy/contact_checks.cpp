@@ -62,23 +62,31 @@ double gap_under_pressure(const MasterHit& hit, double size) {
   return hit.found ? std::max(std::abs(hit.gap), hit.beyond) : size;
 }
 
-/// Adds the forces that the samples claim to the bodies of both sides.
+/// Adds the forces that the samples claim to the bodies of both sides. That of the pressure on the master acts on the
+/// same line as on the slave, so its moment may be taken at the slave's point. Shear acts across that line at the
+/// master's own point, as far away as the two are in the reference configuration, where small kinematics balance forces:
+/// the couple that remains is of the order of what they neglect, and belongs to the balance of the whole scene.
 void add_forces(const ContactSamples& samples, const FacetSet& slave, std::span<const MasterHit> hits, bool is_rigid,
                 const std::array<double, 3>& pivot, ClaimedForces& forces) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::array<double, 3> traction = samples.traction(i);
-    std::array<double, 3> on_slave{}, on_master{};
+    std::array<double, 3> on_slave{}, pressure_on_master{}, shear_on_master{};
     for (std::size_t c = 0; c < 3; ++c) {
       on_slave[c] = samples.weight[i] * traction[c];
-      on_master[c] = -on_slave[c];
+      pressure_on_master[c] = -samples.weight[i] * samples.pressure[i] * samples.normal[i][c];
+      shear_on_master[c] = -on_slave[c] - pressure_on_master[c];
     }
     forces.absolute += std::hypot(traction[0], traction[1], traction[2]) * samples.weight[i];
     add_wrench(forces.on_body[slave.bodies[samples.facet[i]]], samples.place[i], pivot, on_slave);
     // The force on the master acts on the same line: its moment may be taken at the slave's point.
     if (is_rigid)
       add_wrench(forces.by_rigid, samples.place[i], pivot, on_slave);
-    else if (hits[i].found)
-      add_wrench(forces.on_body[hits[i].body], samples.place[i], pivot, on_master);
+    else if (hits[i].found) {
+      auto& on_master = forces.on_body[hits[i].body];
+      add_wrench(on_master, samples.place[i], pivot, pressure_on_master);
+      add_wrench(on_master, hits[i].place, pivot, shear_on_master);
+      add_wrench(forces.couple, samples.place[i], hits[i].place, shear_on_master);
+    }
   }
 }
 

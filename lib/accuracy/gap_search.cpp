@@ -103,6 +103,7 @@ MasterHit hit_of(const FacetCloud& master, const Nearest& nearest, const SlavePo
   hit.found = true;
   hit.body = master.body(f);
   hit.jump = {moved[0], moved[1], moved[2]};
+  hit.place = projection.point;
   if (projection.feature == Feature::Facet)
     hit.gap = height + vector(projection.normal).dot(moved);
   else

@@ -27,7 +27,8 @@ struct MasterHit {
   double gap = 0.0;       // beyond the rim of the master: of the surface continued straight on
   double beyond = 0.0;    // distance beyond the rim; zero over the surface. Points beyond the rim do not penetrate.
   std::int32_t body = -1; // of the master facet
-  std::array<double, 3> jump{}; // u_s − u_m(ξ)
+  std::array<double, 3> jump{};  // u_s − u_m(ξ)
+  std::array<double, 3> place{}; // ρ(ξ)
 };
 
 /// Point ξ of a facet of the slave surface with this displacement (num_local x dim).

@@ -1,8 +1,10 @@
 #include "solve/ladder.hpp"
 
+#include "base/error.hpp"
 #include "base/log.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 namespace amontons {
 
@@ -65,9 +67,33 @@ const char* name_of(const Remedy& remedy) {
   return std::visit(Names{}, remedy);
 }
 
+std::set<std::size_t> chosen_rungs() {
+  std::set<std::size_t> chosen;
+  std::array<char, 256> text{};
+  PetscBool is_given = PETSC_FALSE;
+  AMT_PETSC(PetscOptionsGetString(nullptr, nullptr, "-remedies", text.data(), text.size(), &is_given));
+  std::vector<std::string> names;
+  for (const auto& rung : remedies())
+    names.emplace_back(name_of(rung));
+  if (!is_given) {
+    for (std::size_t rung = 0; rung < names.size(); ++rung)
+      chosen.insert(rung);
+    return chosen;
+  }
+  std::istringstream words(text.data());
+  for (std::string word; std::getline(words, word, ',');) {
+    const auto found = std::find(names.begin(), names.end(), word);
+    if (found == names.end() && word != "none")
+      throw UserError("-remedies: there is no remedy '" + word + "'. There are " + join_names(names) +
+                      " (several separated by commas), and `none`.");
+    if (found != names.end()) chosen.insert(static_cast<std::size_t>(found - names.begin()));
+  }
+  return chosen;
+}
+
 Ladder::Ladder(Problem& problem, Newton& newton, Hooks hooks)
     : problem_(problem), newton_(newton), hooks_(std::move(hooks)), forms_(problem.switching()),
-      uses_(remedies().size()) {}
+      chosen_(chosen_rungs()), uses_(remedies().size()) {}
 
 bool Ladder::applies(const Remedy& remedy, const Trouble& trouble) const {
   if (std::holds_alternative<HeldPoints>(remedy))
@@ -99,7 +125,7 @@ SolveOutcome Ladder::climb(Vec unknowns, const SolveOutcome& failed, const Troub
   note_flipping();
   for (std::size_t rung = 0; rung < remedies().size(); ++rung) {
     const auto& remedy = remedies()[rung];
-    if (spent_.count(rung) > 0 || !applies(remedy, trouble)) continue;
+    if (chosen_.count(rung) == 0 || spent_.count(rung) > 0 || !applies(remedy, trouble)) continue;
     ++uses_[rung].tried;
     const auto tried = start_over(remedy, unknowns);
     outcome.add_effort(tried);

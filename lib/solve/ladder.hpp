@@ -39,6 +39,10 @@ const std::array<Remedy, std::variant_size_v<Remedy>>& remedies();
 /// Its key in the summary.
 const char* name_of(const Remedy& remedy);
 
+/// Which rungs the option -remedies names (comma-separated keys; `none`), by their place; all without it. Throws
+/// UserError, the same on every rank, for a name that there is not.
+std::set<std::size_t> chosen_rungs();
+
 class Ladder {
  public:
   struct Hooks {
@@ -87,7 +91,7 @@ class Ladder {
   Hooks hooks_;
   std::vector<Switching*> forms_;
   Marks on_and_off_; // of the solve that failed
-  std::set<std::size_t> spent_;
+  std::set<std::size_t> chosen_, spent_;
   std::vector<Use> uses_;
 };
 
