@@ -13,6 +13,7 @@ import friction_cases
 import hertz_cases
 import other_cases
 import patch_cases
+import solid_cases
 import vi_cases
 from harness import Bench
 
@@ -22,6 +23,7 @@ CASES = {
     **other_cases.CASES,
     **friction_cases.CASES,
     **block_cases.CASES,
+    **solid_cases.CASES,
     **vi_cases.CASES,
 }
 for scene, case in vi_cases.VI.items():
