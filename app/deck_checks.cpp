@@ -112,10 +112,15 @@ void check_materials(const Check& check) {
   }
 }
 
-/// What finite kinematics cannot be combined with.
+/// Contact that finite kinematics cannot have.
 void check_finite(const Check& check) {
   const auto& [deck, root, reading] = check;
   if (deck.kinematics != Kinematics::Finite || !check.sound("contact") || deck.contact.empty()) return;
+  for (std::size_t i = 0; i < deck.contact.size(); ++i)
+    if (std::holds_alternative<ViDeck>(deck.contact[i].enforce))
+      check.fail({"contact", i, "enforce"},
+                 list_path("contact", i) + ".enforce: vi bounds the motion of the reference configuration, which in " +
+                     "kinematics: finite is not the gap. Use `enforce: {semismooth: {}}`.");
   check.fail({"contact"}, "contact: with kinematics: finite there is no contact in this release. Set kinematics: small "
                           "and keep strains and rotations below a few per cent, or leave contact out.");
 }

@@ -37,7 +37,8 @@ class IncrementSolver {
   Vec accepted() const { return accepted_; }
 
   /// From the last accepted state to equilibrium at `target`, with the remedies of lib/solve when plain iterations do
-  /// not get there. Collective.
+  /// not get there. A solid that is not linear and has supports that move starts where the last accepted increment
+  /// points to, unless an increment has failed since. Collective.
   SolveOutcome solve(double target);
   /// What went on in the last solve that plain iterations did not get through; absent if there was none, or with
   /// bounds.
@@ -62,6 +63,7 @@ class IncrementSolver {
   void start(double target);
   SolveOutcome solve_plainly();
   std::unique_ptr<Ladder> make_ladder();
+  void extrapolate(double target);
 
   Scene& scene_;
   std::function<void(const std::string&)> tell_;
@@ -74,6 +76,7 @@ class IncrementSolver {
   std::optional<Trouble> trouble_;
   double target_ = 0.0; // of the increment being solved
   VecHandle unknowns_, accepted_;
+  VecHandle rate_; // change of the unknowns over time in the last accepted increment; absent: not to be extrapolated
 };
 
 } // namespace amontons

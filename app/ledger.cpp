@@ -43,10 +43,12 @@ void Ledger::find_external_forces(Vec unknowns) {
     viscous.finish();
     AMT_PETSC(VecAXPY(external_, -1.0, viscous_));
   }
-  if (!scene_.loads) return;
+  if (!scene_.loads && !scene_.follower) return;
   AMT_PETSC(VecSet(work_, 0.0));
   Residual loads(*scene_.layout, work_);
-  scene_.loads->add_residual(scene_.problem->state_at(unknowns), loads);
+  const auto state = scene_.problem->state_at(unknowns);
+  if (scene_.loads) scene_.loads->add_residual(state, loads);
+  if (scene_.follower) scene_.follower->add_residual(state, loads);
   loads.finish();
   AMT_PETSC(VecAXPY(external_, -1.0, work_));
 }
@@ -64,6 +66,10 @@ std::vector<double> Ledger::nodal_external_forces(Vec unknowns) {
     const auto viscous = scene_.stabilization->nodal_forces(state);
     for (std::size_t i = 0; i < forces.size(); ++i)
       forces[i] += viscous[i];
+  }
+  if (scene_.follower) {
+    const auto pressure = scene_.follower->nodal_forces(state);
+    std::transform(forces.begin(), forces.end(), pressure.begin(), forces.begin(), std::plus<>());
   }
   {
     VecReader raw(scene_.problem->raw_residual());

@@ -253,6 +253,7 @@ nlohmann::ordered_json describe_scene(const Scene& scene) {
   effects["condensed_multipliers"] = scene.conditions != nullptr;
   effects["loads"] = scene.loads != nullptr;
   effects["stabilization"] = scene.stabilization != nullptr;
+  effects["follower_pressure"] = scene.follower != nullptr;
   nlohmann::ordered_json json;
   json["dim"] = mesh.dim;
   json["order"] = mesh.order;

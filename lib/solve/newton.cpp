@@ -261,6 +261,28 @@ PetscErrorCode Newton::search_energy(SNESLineSearch search, void* self) {
   });
 }
 
+/// From a first failure on, steps are looked at before they are taken, at the price of a residual each.
+void Newton::guard_domain() {
+  SNESLineSearch search = nullptr;
+  AMT_PETSC(SNESGetLineSearch(snes_, &search));
+  AMT_PETSC(SNESLineSearchSetPreCheck(search, stay_in_domain, this));
+}
+
+/// Halves a step that leads where there is no residual (cells turned inside out), before any line search sees it.
+PetscErrorCode Newton::stay_in_domain(SNESLineSearch, Vec start, Vec step, PetscBool* changed, void* self) {
+  constexpr int most_halvings = 8;
+  auto& newton = *static_cast<Newton*>(self);
+  return guarded(newton.kept_, [&] {
+    const auto next = newton.problem_.layout().new_vector(), force = newton.problem_.layout().new_vector();
+    for (int halving = 0; halving < most_halvings; ++halving) {
+      AMT_PETSC(VecWAXPY(next, -1.0, step, start));
+      if (newton.problem_.residual(next, force)) return;
+      AMT_PETSC(VecScale(step, 0.5));
+      *changed = PETSC_TRUE;
+    }
+  });
+}
+
 PetscErrorCode Newton::evaluate_residual(SNES, Vec unknowns, Vec result, void* self) {
   auto& newton = *static_cast<Newton*>(self);
   return guarded(newton.kept_,
@@ -321,6 +343,23 @@ Trouble Newton::trouble() const {
   return trouble;
 }
 
+/// Where the supports move a body that must not be strained by their motion alone; see Problem::begin_prediction.
+void Newton::predict(Vec unknowns) {
+  VecHandle load = problem_.layout().new_vector(), step = problem_.layout().new_vector();
+  if (problem_.begin_prediction(unknowns, matrix_, load)) {
+    KSP solver = nullptr;
+    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+    AMT_PETSC(SNESGetKSP(snes_, &solver));
+    AMT_PETSC(KSPSetOperators(solver, matrix_, matrix_));
+    if (kept_factorization_) kept_factorization_->tangent_changed();
+    AMT_PETSC(KSPSolve(solver, load, step));
+    AMT_PETSC(KSPGetConvergedReason(solver, &reason));
+    ++factorizations_;
+    if (reason < 0) AMT_PETSC(VecSet(step, 0.0)); // the solve from there will tell what is wrong
+  }
+  problem_.end_prediction(unknowns, step);
+}
+
 SolveOutcome Newton::solve(Vec unknowns) {
   factorizations_ = 0;
   record_.clear();
@@ -328,6 +367,7 @@ SolveOutcome Newton::solve(Vec unknowns) {
   kept_ = nullptr;
   if (kept_factorization_) kept_factorization_->begin();
   const Phase phase("linear solver"); // the phases of forms inside stop this clock
+  if (problem_.wants_prediction()) predict(unknowns);
   const PetscErrorCode code = SNESSolve(snes_, nullptr, unknowns);
   if (kept_) std::rethrow_exception(kept_);
   if (kept_factorization_) kept_factorization_->rethrow();
@@ -338,6 +378,7 @@ SolveOutcome Newton::solve(Vec unknowns) {
     outcome.factorizations = kept_factorization_->factorizations();
     outcome.linear = kept_factorization_->iterations();
   }
+  if (!outcome.converged && !problem_.failure().empty()) guard_domain();
   return outcome;
 }
 

@@ -98,6 +98,9 @@ class Newton {
                                          SNESConvergedReason* reason, void* self);
   static PetscErrorCode search_energy(SNESLineSearch search, void* self);
   void observe(double norm);
+  static PetscErrorCode stay_in_domain(SNESLineSearch, Vec start, Vec step, PetscBool* changed, void* self);
+  void guard_domain();
+  void predict(Vec unknowns);
 
   Problem& problem_;
   std::function<bool()> interrupted_;

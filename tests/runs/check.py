@@ -18,6 +18,7 @@ TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / "scenes"), str(TESTS / "support")]
 from friction_runs import path_control, restart_of_friction  # noqa: E402
 from harness import TOP, load_deck, set_key  # noqa: E402
+from plastic_runs import restart_of_plasticity  # noqa: E402
 from score import Score  # noqa: E402
 
 HERTZ = "hertz_2d"
@@ -203,6 +204,7 @@ def main():
     cases = {
         "restart": restart,
         "restart_of_friction": restart_of_friction,
+        "restart_of_plasticity": restart_of_plasticity,
         "path_control": path_control,
         "interrupt": interrupt,
         "statuses": statuses,

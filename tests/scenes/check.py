@@ -15,6 +15,7 @@ import hertz_cases
 import obstacle_cases
 import other_cases
 import patch_cases
+import solid_cases
 import vi_cases
 from harness import Bench
 
@@ -24,6 +25,7 @@ CASES = {
     **other_cases.CASES,
     **friction_cases.CASES,
     **block_cases.CASES,
+    **solid_cases.CASES,
     **vi_cases.CASES,
     **obstacle_cases.CASES,
     **adapt_cases.CASES,
