@@ -36,12 +36,6 @@ struct SegmentIntegration {
 };
 using Integration = std::variant<FacetIntegration, SegmentIntegration>;
 
-/// Where gap, normal, slip and area are taken: in the reference configuration, with projections that are found once,
-/// or in the current one, anew for every iterate.
-struct SmallKinematics {};
-struct FiniteKinematics {};
-using ContactKinematics = std::variant<SmallKinematics, FiniteKinematics>;
-
 /// Where λ comes from: nowhere, an outer loop, an unknown of the system (extra field number `field` of the layout), or
 /// the force on a bound of the normal motion.
 struct Penalty {};
@@ -66,7 +60,9 @@ struct ContactPair {
   Enforcement enforcement;
   ProjectionKind projection;
   Integration integration = FacetIntegration{}; // segment: with a meshed master and small kinematics only
-  ContactKinematics kinematics = SmallKinematics{};
+  /// Small: gap, normal, slip and area of the reference configuration, with projections that are found once. Finite:
+  /// those of the current one, anew for every iterate.
+  Kinematics kinematics = Kinematics::Small;
   double alpha = 1.0;           // dimensionless augmentation: ε = alpha · stiffness / h
   double search_distance = 0.0; // farther master facets are not looked at
   Space space = Space::Solid;

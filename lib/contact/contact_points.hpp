@@ -77,7 +77,7 @@ class ContactPoints {
   std::array<double, 3> rigid_shift() const { return shift_; }
 
   // Finite kinematics:
-  bool is_following() const { return std::holds_alternative<FiniteKinematics>(pair_.kinematics); }
+  bool is_following() const { return pair_.kinematics == Kinematics::Finite; }
   /// Takes normals, gaps, weights and master shape functions to the iterate; gathers the master anew when surfaces have
   /// moved as far as the last gathering looked. Does nothing when the iterate is that of the last call. Collective.
   void follow(const State& state);

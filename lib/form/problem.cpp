@@ -275,8 +275,9 @@ double Problem::probe_diagonal(const State& state) {
   return sum;
 }
 
-/// The constant part with the whole pattern in place, kept inside the matrix (MatStoreValues) for later tangents. One
-/// assembly for all: PETSc gives preallocated places away that an assembly finds unused.
+/// The constant part with the whole pattern in place, kept in a copy for later tangents. (MatStoreValues writes past
+/// its end when the pattern has grown.) One assembly for all: PETSc gives preallocated places away that an assembly
+/// finds unused.
 void Problem::assemble_constant(const State& state, Mat matrix) {
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_TRUE));
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_TRUE));
@@ -316,7 +317,7 @@ void Problem::assemble_constant(const State& state, Mat matrix) {
   AMT_PETSC(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_FALSE));
-  AMT_PETSC(MatStoreValues(matrix));
+  AMT_PETSC(MatDuplicate(matrix, MAT_COPY_VALUES, constant_.put()));
   if (has_constant) AMT_PETSC(MatGetDiagonal(matrix, diagonal_));
   constant_ready_ = true;
 }
@@ -332,7 +333,7 @@ bool Problem::tangent(Vec unknowns, Mat matrix) {
   if (any_rank(coupling_changed)) build_pattern(matrix);
   if (!any_rank(tangent_changed || !tangent_ready_)) return false;
   if (constant_ready_)
-    AMT_PETSC(MatRetrieveValues(matrix));
+    AMT_PETSC(MatCopy(constant_, matrix, SAME_NONZERO_PATTERN));
   else
     assemble_constant(state, matrix);
   add_changing(state, matrix);
