@@ -115,14 +115,23 @@ void check_materials(const Check& check) {
 /// Contact that finite kinematics cannot have.
 void check_finite(const Check& check) {
   const auto& [deck, root, reading] = check;
-  if (deck.kinematics != Kinematics::Finite || !check.sound("contact") || deck.contact.empty()) return;
-  for (std::size_t i = 0; i < deck.contact.size(); ++i)
+  if (deck.kinematics != Kinematics::Finite || !check.sound("contact")) return;
+  for (std::size_t i = 0; i < deck.contact.size(); ++i) {
+    const auto path = list_path("contact", i);
+    if (std::holds_alternative<SegmentIntegrationDeck>(deck.contact[i].integration))
+      check.fail({"contact", i, "integration"},
+                 path + ".integration: segments are cut once, in the reference configuration, and would no longer fit "
+                        "the surfaces once they have slid. With kinematics: finite use `{facet: {order: 6}}`, or a "
+                        "higher order.");
     if (std::holds_alternative<ViDeck>(deck.contact[i].enforce))
       check.fail({"contact", i, "enforce"},
-                 list_path("contact", i) + ".enforce: vi bounds the motion of the reference configuration, which in " +
-                     "kinematics: finite is not the gap. Use `enforce: {semismooth: {}}`.");
-  check.fail({"contact"}, "contact: with kinematics: finite there is no contact in this release. Set kinematics: small "
-                          "and keep strains and rotations below a few per cent, or leave contact out.");
+                 path + ".enforce: vi bounds motions along normals of the reference configuration. With kinematics: "
+                        "finite use `{semismooth: {}}`.");
+    if (is_condensed(deck.contact[i].enforce))
+      check.fail({"contact", i, "enforce"},
+                 path + ".enforce: the dual basis is made once, in the reference configuration. With kinematics: finite "
+                        "use `{semismooth: {}}`.");
+  }
 }
 
 /// Components that the space does not have.

@@ -109,6 +109,7 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
                      .master = make_master(declared.master.value),
                      .enforcement = {},
                      .projection = {},
+                     .kinematics = deck.kinematics,
                      .space = deck.space,
                      .stiffness = {}};
     std::visit(Overloaded{[&](const PenaltyDeck& penalty) {

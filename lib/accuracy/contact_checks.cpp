@@ -19,11 +19,20 @@ struct PairPoints {
   std::size_t num_claimed = 0;
 };
 
+/// From where and how far the surfaces have moved when gaps are taken: see gap_search.hpp.
+struct Placement {
+  std::span<const double> start, displacement;
+};
+
 /// The certificate's own points: every node of every slave facet, and a quadrature rule inside.
-PairPoints points_of_pair(const CertificateInput& input, const FacetSet& slave, const ContactSamples& samples) {
+PairPoints points_of_pair(const CertificateInput& input, const Placement& placement, const FacetSet& slave,
+                          const ContactSamples& samples) {
   PairPoints result;
+  const auto add = [&](std::int32_t f, std::span<const double> xi) {
+    result.points.push_back(slave_point(input.mesh, placement.displacement, slave, f, xi, placement.start));
+  };
   for (std::size_t i = 0; i < samples.size(); ++i)
-    result.points.push_back(slave_point(input.mesh, input.displacement, slave, samples.facet[i], samples.xi[i]));
+    add(samples.facet[i], samples.xi[i]);
   result.num_claimed = samples.size();
   for (std::int32_t f = 0; f < slave.size(); ++f) {
     const auto nodes = reference_nodes(slave.types[f]);
@@ -31,7 +40,7 @@ PairPoints points_of_pair(const CertificateInput& input, const FacetSet& slave, 
     const std::size_t d = element_dim(slave.types[f]);
     for (const std::span<const double> places : {nodes, std::span<const double>(rule.points)})
       for (std::size_t at = 0; at < places.size(); at += d)
-        result.points.push_back(slave_point(input.mesh, input.displacement, slave, f, places.subspan(at, d)));
+        add(f, places.subspan(at, d));
   }
   return result;
 }
@@ -50,11 +59,12 @@ std::vector<MasterHit> find_on_shape(const MovedShape& master, const Mesh& mesh,
   return hits;
 }
 
-std::vector<MasterHit> find_on_surface(const CertificateInput& input, const ContactPairNames& names,
-                                       std::span<const SlavePoint> points) {
+std::vector<MasterHit> find_on_surface(const CertificateInput& input, const Placement& placement,
+                                       const ContactPairNames& names, std::span<const SlavePoint> points) {
   const FacetSet& master = input.mesh.surfaces.at(std::get<std::string>(names.master));
-  const double reach = reach_of(input.mesh, input.displacement, master, points);
-  return find_on_master(input.mesh, input.displacement, master, points, reach);
+  const auto& [start, displacement] = placement;
+  const double reach = reach_of(input.mesh, displacement, master, points, start);
+  return find_on_master(input.mesh, displacement, master, points, reach, start);
 }
 
 /// The gap that a claimed pressure is held against: where there is no master the distance to it, at least a facet.
@@ -63,11 +73,12 @@ double gap_under_pressure(const MasterHit& hit, double size) {
 }
 
 /// Adds the forces that the samples claim to the bodies of both sides. That of the pressure on the master acts on the
-/// same line as on the slave, so its moment may be taken at the slave's point. Shear acts across that line at the
-/// master's own point, as far away as the two are in the reference configuration, where small kinematics balance forces:
-/// the couple that remains is of the order of what they neglect, and belongs to the balance of the whole scene.
-void add_forces(const ContactSamples& samples, const FacetSet& slave, std::span<const MasterHit> hits, bool is_rigid,
-                const std::array<double, 3>& pivot, ClaimedForces& forces) {
+/// same line as on the slave, so its moment may be taken at the slave's point. Shear acts across that line: at the
+/// master's own point, as far away as the two are, where small kinematics balance forces (the couple that remains is of
+/// the order of what they neglect, and belongs to the balance of the whole scene), or at the same place on both.
+void add_forces(const ContactSamples& samples, const FacetSet& slave, std::span<const SlavePoint> points,
+                std::span<const MasterHit> hits, bool is_rigid, const std::array<double, 3>& pivot,
+                ClaimedForces& forces) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::array<double, 3> traction = samples.traction(i);
     std::array<double, 3> on_slave{}, pressure_on_master{}, shear_on_master{};
@@ -76,16 +87,20 @@ void add_forces(const ContactSamples& samples, const FacetSet& slave, std::span<
       pressure_on_master[c] = -samples.weight[i] * samples.pressure[i] * samples.normal[i][c];
       shear_on_master[c] = -on_slave[c] - pressure_on_master[c];
     }
+    const auto& place = samples.acts_at.empty() ? points[i].place : samples.acts_at[i];
     forces.absolute += std::hypot(traction[0], traction[1], traction[2]) * samples.weight[i];
-    add_wrench(forces.on_body[slave.bodies[samples.facet[i]]], samples.place[i], pivot, on_slave);
-    // The force on the master acts on the same line: its moment may be taken at the slave's point.
+    add_wrench(forces.on_body[slave.bodies[samples.facet[i]]], place, pivot, on_slave);
+    // The force on the master acts on the same line: its moment may be taken at the same place.
     if (is_rigid)
-      add_wrench(forces.by_rigid, samples.place[i], pivot, on_slave);
+      add_wrench(forces.by_rigid, place, pivot, on_slave);
     else if (hits[i].found) {
+      auto on_other_side = place;
+      for (std::size_t c = 0; samples.acts_at.empty() && c < 3; ++c)
+        on_other_side[c] -= hits[i].away[c];
       auto& on_master = forces.on_body[hits[i].body];
-      add_wrench(on_master, samples.place[i], pivot, pressure_on_master);
-      add_wrench(on_master, hits[i].place, pivot, shear_on_master);
-      add_wrench(forces.couple, samples.place[i], hits[i].place, shear_on_master);
+      add_wrench(on_master, place, pivot, pressure_on_master);
+      add_wrench(on_master, on_other_side, pivot, shear_on_master);
+      add_wrench(forces.couple, place, on_other_side, shear_on_master);
     }
   }
 }
@@ -97,15 +112,18 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
   const std::size_t count = input.pairs.size();
   forces.on_body.assign(mesh.bodies.size(), {});
   GapChecks result;
+  const std::vector<double> at_rest(input.kinematics == Kinematics::Finite ? input.displacement.size() : 0, 0.0);
+  const Placement placement = input.kinematics == Kinematics::Finite ? Placement{input.displacement, at_rest}
+                                                                     : Placement{{}, input.displacement};
   std::vector<double> sums(2 * count, 0.0); // per pair Σ |p g| w / h, Σ |p| w
   for (std::size_t pair = 0; pair < count; ++pair) {
     const ContactPairNames& names = input.pairs[pair];
     const ContactSamples& samples = input.samples[pair];
     const FacetSet& slave = mesh.surfaces.at(names.slave);
-    const PairPoints all = points_of_pair(input, slave, samples);
+    const PairPoints all = points_of_pair(input, placement, slave, samples);
     const auto* shape = std::get_if<MovedShape>(&names.master);
-    const std::vector<MasterHit> hits =
-        shape != nullptr ? find_on_shape(*shape, mesh, all.points) : find_on_surface(input, names, all.points);
+    const std::vector<MasterHit> hits = shape != nullptr ? find_on_shape(*shape, mesh, all.points)
+                                                         : find_on_surface(input, placement, names, all.points);
     for (std::size_t i = 0; i < hits.size(); ++i) {
       if (!hits[i].found || hits[i].beyond > 0.0) continue;
       result.penetration.offer(-hits[i].gap / all.points[i].size, [&] {
@@ -117,7 +135,7 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
       if (force > 0.0) sums[2 * pair] += force * gap_under_pressure(hits[i], size) / size;
       sums[2 * pair + 1] += force;
     }
-    add_forces(samples, slave, hits, shape != nullptr, pivot, forces);
+    add_forces(samples, slave, all.points, hits, shape != nullptr, pivot, forces);
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
   double total = 0.0;

@@ -41,9 +41,16 @@ std::vector<double> positions_of(const Mesh& mesh, std::span<const double> displ
 
 FacetCloud FacetCloud::local(const Mesh& mesh, std::span<const double> displacement, const FacetSet& facets,
                              Configuration configuration) {
+  const bool is_reference = configuration == Configuration::Reference;
+  return moving(mesh, is_reference ? std::span<const double>() : displacement, displacement, facets);
+}
+
+FacetCloud FacetCloud::moving(const Mesh& mesh, std::span<const double> start, std::span<const double> displacement,
+                              const FacetSet& facets) {
+  const auto configuration = start.empty() ? Configuration::Reference : Configuration::Current;
   FacetCloud cloud(mesh.dim);
   for (std::int32_t f = 0; f < facets.size(); ++f)
-    cloud.append(facets.types[f], facets.bodies[f], positions_of(mesh, displacement, facets.facet(f), configuration),
+    cloud.append(facets.types[f], facets.bodies[f], positions_of(mesh, start, facets.facet(f), configuration),
                  nodal_values(mesh, displacement, facets.facet(f)));
   cloud.plant();
   return cloud;

@@ -29,6 +29,9 @@ class FacetCloud {
   /// This rank's facets of the set.
   static FacetCloud local(const Mesh& mesh, std::span<const double> displacement, const FacetSet& facets,
                           Configuration configuration);
+  /// The same at X + start (empty: X), with a displacement from there.
+  static FacetCloud moving(const Mesh& mesh, std::span<const double> start, std::span<const double> displacement,
+                           const FacetSet& facets);
   /// The facets of all ranks' clouds whose boxes meet `wanted` of this rank. Collective.
   FacetCloud gathered(MPI_Comm comm, const Box& wanted) const;
 

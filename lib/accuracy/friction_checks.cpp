@@ -82,16 +82,21 @@ double largest_increment(const CertificateInput& input) {
   return largest;
 }
 
-/// Displacement increment of the slave relative to the master at the claimed points, from a search of its own.
-/// Collective.
+/// Displacement increment of the slave relative to the master at the claimed points, from a search of its own. In
+/// finite kinematics the search is in the last accepted configuration, and what is between the point and its projection
+/// there belongs to it: where the point is now, seen from where that place of the master is now. Collective.
 std::vector<Vector> moved_over_master(const CertificateInput& input, std::size_t pair) {
   const Mesh& mesh = input.mesh;
   const ContactSamples& samples = input.samples[pair];
   const FacetSet& slave = mesh.surfaces.at(input.pairs[pair].slave);
+  const bool finite = input.kinematics == Kinematics::Finite;
+  std::vector<double> start(finite ? input.displacement.size() : 0);
+  for (std::size_t k = 0; k < start.size(); ++k)
+    start[k] = input.displacement[k] - input.increment[k];
   const auto points_with = [&](std::span<const double> displacement) {
     std::vector<SlavePoint> points;
     for (std::size_t i = 0; i < samples.size(); ++i)
-      points.push_back(slave_point(mesh, displacement, slave, samples.facet[i], samples.xi[i]));
+      points.push_back(slave_point(mesh, displacement, slave, samples.facet[i], samples.xi[i], start));
     return points;
   };
   const auto points = points_with(input.increment);
@@ -99,15 +104,26 @@ std::vector<Vector> moved_over_master(const CertificateInput& input, std::size_t
   if (const auto* rigid = std::get_if<MovedShape>(&input.pairs[pair].master)) {
     for (const SlavePoint& point : points) {
       moved.push_back(point.displacement);
-      for (std::size_t c = 0; c < 3; ++c)
+      Vector shift = rigid->shift;
+      for (std::size_t c = 0; c < 3; ++c) {
         moved.back()[c] -= rigid->increment[c];
+        shift[c] -= rigid->increment[c];
+      }
+      if (!finite) continue;
+      const auto before = signed_distance(rigid->shape, shift, std::span(point.place).first(mesh.dim));
+      for (std::size_t c = 0; c < 3; ++c)
+        moved.back()[c] += before.gap * before.normal[c];
     }
     return moved;
   }
   const FacetSet& master = mesh.surfaces.at(std::get<std::string>(input.pairs[pair].master));
-  const double reach = reach_of(mesh, input.displacement, master, points_with(input.displacement));
-  for (const MasterHit& hit : find_on_master(mesh, input.increment, master, points, reach))
+  const auto reaching = finite ? input.increment : input.displacement;
+  const double reach = reach_of(mesh, reaching, master, points_with(reaching), start);
+  for (const MasterHit& hit : find_on_master(mesh, input.increment, master, points, reach, start)) {
     moved.push_back(hit.jump);
+    for (std::size_t c = 0; finite && c < 3; ++c)
+      moved.back()[c] += hit.away[c];
+  }
   return moved;
 }
 

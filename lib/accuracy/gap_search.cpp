@@ -103,7 +103,7 @@ MasterHit hit_of(const FacetCloud& master, const Nearest& nearest, const SlavePo
   hit.found = true;
   hit.body = master.body(f);
   hit.jump = {moved[0], moved[1], moved[2]};
-  hit.place = projection.point;
+  hit.away = {r[0], r[1], r[2]};
   if (projection.feature == Feature::Facet)
     hit.gap = height + vector(projection.normal).dot(moved);
   else
@@ -114,10 +114,11 @@ MasterHit hit_of(const FacetCloud& master, const Nearest& nearest, const SlavePo
 } // namespace
 
 SlavePoint slave_point(const Mesh& mesh, std::span<const double> displacement, const FacetSet& slave, std::int32_t f,
-                       std::span<const double> xi) {
+                       std::span<const double> xi, std::span<const double> start) {
   const ElementType type = slave.types[f];
   const auto nodes = slave.facet(f);
-  const auto positions = nodal_values(mesh, mesh.coordinates, nodes);
+  const auto positions =
+      positions_of(mesh, start, nodes, start.empty() ? Configuration::Reference : Configuration::Current);
   const auto moved = nodal_values(mesh, displacement, nodes);
   std::array<double, 9> shape;
   const auto at = xi.first(element_dim(type));
@@ -134,7 +135,7 @@ SlavePoint slave_point(const Mesh& mesh, std::span<const double> displacement, c
 }
 
 double reach_of(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
-                std::span<const SlavePoint> points) {
+                std::span<const SlavePoint> points, std::span<const double> start) {
   Box range;
   double size = 0.0;
   for (const SlavePoint& point : points) {
@@ -144,7 +145,9 @@ double reach_of(const Mesh& mesh, std::span<const double> displacement, const Fa
   for (const std::int32_t node : master.nodes)
     range.include(displacement.subspan(std::size_t(node) * mesh.dim, mesh.dim));
   for (std::int32_t f = 0; f < master.size(); ++f)
-    size = std::max(size, facet_size(master.types[f], nodal_values(mesh, mesh.coordinates, master.facet(f))));
+    size = std::max(size, facet_size(master.types[f],
+                                     positions_of(mesh, start, master.facet(f),
+                                                  start.empty() ? Configuration::Reference : Configuration::Current)));
   for (const Box& box : boxes_of_ranks(mesh.comm, std::span(&range, 1)))
     range.include(box);
   MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_DOUBLE, MPI_MAX, mesh.comm);
@@ -184,13 +187,12 @@ double distance_to_cone(const std::array<double, 3>& r, std::span<const std::arr
 }
 
 std::vector<MasterHit> find_on_master(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
-                                      std::span<const SlavePoint> points, double reach) {
+                                      std::span<const SlavePoint> points, double reach, std::span<const double> start) {
   Box wanted;
   for (const SlavePoint& point : points)
     wanted.include(std::span(point.place).first(mesh.dim));
   wanted.inflate(reach);
-  const FacetCloud cloud =
-      FacetCloud::local(mesh, displacement, master, Configuration::Reference).gathered(mesh.comm, wanted);
+  const FacetCloud cloud = FacetCloud::moving(mesh, start, displacement, master).gathered(mesh.comm, wanted);
   std::vector<MasterHit> hits;
   std::vector<std::int32_t> scratch;
   for (const SlavePoint& point : points) {

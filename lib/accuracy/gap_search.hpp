@@ -10,7 +10,12 @@
 
 namespace amontons::accuracy {
 
-/// A point of the slave surface: X, u, outward normal and size of its facet.
+// All of it starts from a configuration, given by its displacement `start` (num_local x dim; empty: the reference
+// configuration), and a displacement from there. Small kinematics starts from the reference and takes the gap after the
+// displacement; finite kinematics starts from the current configuration, where the gap is that of zero displacement,
+// and for slips from the last accepted one.
+
+/// A point of the slave surface: place and outward normal at the start, displacement from there, size of its facet.
 struct SlavePoint {
   std::array<double, 3> place{};
   std::array<double, 3> displacement{};
@@ -27,22 +32,23 @@ struct MasterHit {
   double gap = 0.0;       // beyond the rim of the master: of the surface continued straight on
   double beyond = 0.0;    // distance beyond the rim; zero over the surface. Points beyond the rim do not penetrate.
   std::int32_t body = -1; // of the master facet
-  std::array<double, 3> jump{};  // u_s − u_m(ξ)
-  std::array<double, 3> place{}; // ρ(ξ)
+  std::array<double, 3> jump{}; // u_s − u_m(ξ)
+  std::array<double, 3> away{}; // X_s − ρ(ξ)
 };
 
 /// Point ξ of a facet of the slave surface with this displacement (num_local x dim).
 SlavePoint slave_point(const Mesh& mesh, std::span<const double> displacement, const FacetSet& slave, std::int32_t f,
-                       std::span<const double> xi);
+                       std::span<const double> xi, std::span<const double> start = {});
 
-/// How far apart two points may be in the reference configuration and still meet: the largest difference between
+/// How far apart two points may be at the start and still meet: the largest difference between
 /// displacements of the two surfaces, and a facet. Collective.
 double reach_of(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
-                std::span<const SlavePoint> points);
+                std::span<const SlavePoint> points, std::span<const double> start = {});
 
 /// Searches the master for every point of this rank. A master facet farther than `reach` is not looked at. Collective.
 std::vector<MasterHit> find_on_master(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
-                                      std::span<const SlavePoint> points, double reach);
+                                      std::span<const SlavePoint> points, double reach,
+                                      std::span<const double> start = {});
 
 /// Distance of r from the cone of the combinations Σ a_i n_i, a_i >= 0, of unit vectors.
 double distance_to_cone(const std::array<double, 3>& r, std::span<const std::array<double, 3>> normals);

@@ -290,7 +290,7 @@ void ContactForm::add_residual(const State& state, Residual& residual) {
       residual.add(equations, values);
     }
     if (tangential_) tangential_->add_residual(group.begin, group.end, residual);
-    if (tangential_ && points_.is_following()) add_turning_forces(group, residual);
+    if (points_.is_following()) add_turning_forces(group, residual);
     if (!is_unknown()) continue;
     const int field = std::get<Semismooth>(pair_.enforcement).field;
     const int vertices = num_vertices(points_.slave().types[group.facet]);
@@ -443,9 +443,14 @@ double ContactForm::work_of_displacement(const State& state) {
   evaluate(state);
   double work = 0.0;
   const auto& points = points_.points();
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (active_[i]) work += points[i].weight * sigma(i) * (gap_[i] - points[i].gap0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!active_[i]) continue;
+    const auto jump = points_.displacement_jump(points[i], state);
+    for (int c = 0; c < 3; ++c)
+      work += points[i].weight * sigma(i) * points[i].normal[c] * jump[c];
+  }
   if (tangential_) work += tangential_->sums().work;
+  if (points_.is_following()) work += work_of_turning(state);
   MPI_Allreduce(MPI_IN_PLACE, &work, 1, MPI_DOUBLE, MPI_SUM, layout_.mesh().comm);
   return work;
 }
@@ -491,6 +496,8 @@ ContactSamples ContactForm::samples(const State& state) {
     samples.xi.push_back(points_.xi(point));
     samples.place.push_back(point.place);
     samples.normal.push_back(point.normal);
+    if (points_.is_following() && std::holds_alternative<SlaveNormal>(pair_.projection))
+      samples.acts_at.push_back(points_.force_place(i));
     samples.weight.push_back(point.weight);
     samples.facet_size.push_back(point.size);
     samples.pressure.push_back(sigma(i) < 0.0 ? -sigma(i) : 0.0);

@@ -12,6 +12,7 @@
 #include "form/switching.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -106,7 +107,14 @@ class ContactForm : public Form, public PairReport, public Switching {
   void couple_now(Coupling& coupling) const;
   void couple_near_now();
   bool all_coupled_now() const;
+  /// What shear over a gap exerts on the nodes of the facet whose motion turns the normal: dim numbers a node.
+  struct TurningForces {
+    bool on_slave;
+    std::vector<double> values;
+  };
+  std::optional<TurningForces> turning_forces(std::size_t i) const;
   void add_turning_forces(const Group& group, Residual& residual) const;
+  double work_of_turning(const State& state) const;
   void add_tangent_now(bool guess_stick, Tangent& tangent) const;
   /// A group's part of the tangent, row-major. Equations of the old master facet stand behind all others.
   struct DenseBlock {

@@ -68,7 +68,9 @@ struct ContactPair {
   Enforcement enforcement;
   ProjectionKind projection;
   Integration integration = FacetIntegration{}; // segment: with a meshed master and small kinematics only
-  ContactKinematics kinematics = SmallKinematics{};
+  /// Small: gap, normal, slip and area of the reference configuration, with projections that are found once. Finite:
+  /// those of the current one, anew for every iterate.
+  Kinematics kinematics = Kinematics::Small;
   double alpha = 1.0;           // dimensionless augmentation: ε = alpha · stiffness / h
   double search_distance = 0.0; // farther master facets are not looked at
   Space space = Space::Solid;

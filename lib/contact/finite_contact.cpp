@@ -125,39 +125,59 @@ void ContactForm::couple_now(Coupling& coupling) const {
 
 // --- forces and tangent ----------------------------------------------------------------------------------------------
 
-/// What shear over a gap exerts on the nodes whose motion turns the normal (point_tangent.cpp).
-void ContactForm::add_turning_forces(const Group& group, Residual& residual) const {
+/// Derivation: point_tangent.cpp. None without friction and where no facet turns the normal.
+std::optional<ContactForm::TurningForces> ContactForm::turning_forces(std::size_t i) const {
+  const auto& point = points_.points()[i];
+  if (!tangential_ || !active_[i] || point.master < 0) return std::nullopt;
   const int d = layout_.dim();
+  const auto& now = points_.now(i);
+  const auto master = points_.master_at(point.master, now.xi);
+  const auto turning = point_kinematics(now.slave, master, now.hold, vector(point.normal), gap_[i]).turning;
+  if (turning.slot < 0) return std::nullopt;
+  const PointTractions tractions{.normal = vector(point.normal),
+                                 .gap = gap_[i],
+                                 .weight = point.weight,
+                                 .sigma = 0.0,
+                                 .shear = vector(tangential_->traction(i))};
+  const auto forces = point_forces(tractions, turning);
+  TurningForces result{.on_slave = turning.slot == contact_slot::s, .values = {}};
+  const auto type = result.on_slave ? points_.slave().types[point.facet] : points_.master()->type(point.master);
+  const auto shape = shape_table(type, result.on_slave ? points_.xi(point) : now.xi);
+  result.values.assign(std::size_t(num_nodes(type)) * d, 0.0);
+  for (int a = 0; a < num_nodes(type); ++a)
+    for (int c = 0; c < d; ++c)
+      for (int k = 0; k < d - 1; ++k)
+        result.values[a * d + c] += shape(1 + k, a) * forces[turning.slot + 3 * k + c];
+  return result;
+}
+
+void ContactForm::add_turning_forces(const Group& group, Residual& residual) const {
+  const std::size_t d = layout_.dim();
+  const auto nodes = points_.slave().facet(group.facet);
   for (std::size_t i = group.begin; i < group.end; ++i) {
-    if (!active_[i] || group.master < 0) continue;
-    const auto& point = points_.points()[i];
-    const auto& now = points_.now(i);
-    const auto master = points_.master_at(point.master, now.xi);
-    const auto turning = point_kinematics(now.slave, master, now.hold, vector(point.normal), gap_[i]).turning;
-    if (turning.slot < 0) continue;
-    const PointTractions tractions{.normal = vector(point.normal),
-                                   .gap = gap_[i],
-                                   .weight = point.weight,
-                                   .sigma = 0.0,
-                                   .shear = vector(tangential_->traction(i))};
-    const auto forces = point_forces(tractions, turning);
-    const bool on_slave = turning.slot == contact_slot::s;
-    const auto type = on_slave ? points_.slave().types[point.facet] : points_.master()->type(point.master);
-    const auto xi = on_slave ? points_.xi(point) : now.xi;
-    const auto shape = shape_table(type, xi);
-    std::vector<double> values(std::size_t(num_nodes(type)) * d, 0.0);
-    for (int a = 0; a < num_nodes(type); ++a)
-      for (int c = 0; c < d; ++c)
-        for (int k = 0; k < d - 1; ++k)
-          values[a * d + c] += shape(1 + k, a) * forces[turning.slot + 3 * k + c];
-    if (on_slave) {
-      const auto nodes = points_.slave().facet(point.facet);
-      for (std::size_t k = 0; k < values.size(); ++k)
-        residual.nodal()[std::size_t(nodes[k / d]) * d + k % d] += values[k];
-    } else {
-      residual.add(master_equations(point.master), values);
-    }
+    const auto forces = turning_forces(i);
+    if (!forces) continue;
+    for (std::size_t k = 0; forces->on_slave && k < forces->values.size(); ++k)
+      residual.nodal()[std::size_t(nodes[k / d]) * d + k % d] += forces->values[k];
+    if (!forces->on_slave) residual.add(master_equations(group.master), forces->values);
   }
+}
+
+/// Work of the turning forces on the displacement itself.
+double ContactForm::work_of_turning(const State& state) const {
+  const std::size_t d = layout_.dim();
+  double work = 0.0;
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    const auto forces = turning_forces(i);
+    if (!forces) continue;
+    const auto& point = points_.points()[i];
+    const auto slaves = points_.slave().facet(point.facet);
+    const auto masters = points_.master()->nodes(point.master);
+    for (std::size_t k = 0; k < forces->values.size(); ++k)
+      work += forces->values[k] * (forces->on_slave ? state.displacement[std::size_t(slaves[k / d]) * d + k % d]
+                                                    : points_.master()->displacement(masters[k / d])[k % d]);
+  }
+  return work;
 }
 
 /// Tractions, forces and their derivatives at a point in contact.

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import adapt_cases
 import block_cases
+import finite_contact_cases
 import friction_cases
 import hertz_cases
 import obstacle_cases
@@ -29,6 +30,7 @@ CASES = {
     **vi_cases.CASES,
     **obstacle_cases.CASES,
     **adapt_cases.CASES,
+    **finite_contact_cases.CASES,
 }
 for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case
