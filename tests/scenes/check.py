@@ -9,6 +9,7 @@ import tempfile
 from pathlib import Path
 
 import block_cases
+import condensed_cases
 import friction_cases
 import hertz_cases
 import other_cases
@@ -26,6 +27,8 @@ CASES = {
 }
 for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case
+for scene, cases in condensed_cases.SCENES.items():
+    CASES[scene].update(cases)
 
 
 def main():
