@@ -125,9 +125,9 @@ void CondensedContact::find_tangential_part(Node& node, const VecReader& changed
   for (int c = 0; c < problem_.layout().dim(); ++c)
     if (frame.is_free[c]) add(node.jump, constraint.leverage() * changed[node.first + c], frame.axis(c));
   if (pair(node).points().has_rigid_master()) add(node.jump, -1.0, pair(node).rigid_shift());
+  node.trial = {};
   if (!node.closed) return;
   const auto motion = friction.motion(node.place, node.jump);
-  node.trial = {};
   for (int c = 0; c < problem_.layout().dim(); ++c) {
     if (!frame.is_free[c] || c == frame.host) continue;
     const auto axis = frame.axis(c);
@@ -204,9 +204,9 @@ void CondensedContact::hold_friction(std::size_t p) {
   const std::size_t count = form.nodes().nodes.size();
   std::vector<std::vector<double>> fields(6, std::vector<double>(count, 0.0));
   for (const auto& node : nodes_)
-    for (std::size_t c = 0; node.pair == p && node.closed && c < 3; ++c) {
+    for (std::size_t c = 0; node.pair == p && c < 3; ++c) {
       fields[c][node.place] = node.trial[c];
-      fields[3 + c][node.place] = node.jump[c];
+      fields[3 + c][node.place] = node.jump[c]; // of open nodes too: what they move is not slip of a later increment
     }
   const NodeSpace space(problem_.layout().mesh(), std::vector<NodeField>(6, form.nodes()));
   const auto global = space.new_vector();

@@ -30,7 +30,7 @@ CondensedNewton::CondensedNewton(Problem& problem, CondensedUnknowns& conditions
     : problem_(problem), conditions_(conditions), interrupted_(std::move(interrupted)), whole_(problem),
       changed_(problem.layout().new_vector()), forces_(problem.layout().new_vector()),
       residual_(problem.layout().new_vector()), given_residual_(problem.layout().new_vector()),
-      step_residual_(problem.layout().new_vector()) {
+      guessed_residual_(problem.layout().new_vector()) {
   AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
   AMT_PETSC(SNESSetFunction(snes_, residual_, evaluate_residual, this));
   AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
@@ -73,8 +73,9 @@ bool CondensedNewton::find_residual(Vec changed, Evaluation evaluation, Vec resu
 /// Anew only where K or a condition is another than at the last one.
 void CondensedNewton::find_tangent(Vec changed) {
   is_assembled_ = !whole_.tangent(changed) && is_assembled_;
-  find_residual(changed, evaluation_, step_residual_);
-  ask_for_decrease(snes_, evaluation_ == Evaluation::FirstGuess ? accept_anything : decrease_);
+  find_residual(changed, evaluation_, guessed_residual_);
+  is_guess_ = evaluation_ == Evaluation::FirstGuess;
+  ask_for_decrease(snes_, is_guess_ ? accept_anything : decrease_);
   evaluation_ = Evaluation::True;
   const auto rows = conditions_.rows();
   int same = is_assembled_ && std::equal(rows.begin(), rows.end(), assembled_rows_.begin(), assembled_rows_.end());
@@ -159,7 +160,8 @@ PetscErrorCode CondensedNewton::before_linear_solve(KSP, Vec right, Vec, void* s
   auto& newton = *static_cast<CondensedNewton*>(self);
   return guarded(newton.kept_, [&] {
     AMT_PETSC(VecCopy(right, newton.given_residual_));
-    AMT_PETSC(VecCopy(newton.step_residual_, right));
+    if (newton.is_guess_) AMT_PETSC(VecCopy(newton.guessed_residual_, right));
+    newton.is_guess_ = false;
     if (newton.problem_.tangent_is_symmetric()) newton.move_fixed_to(right);
   });
 }

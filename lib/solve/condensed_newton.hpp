@@ -47,7 +47,8 @@ class CondensedNewton {
   MatHandle matrix_; // Tᵀ K T with the rows of conditions
   bool is_assembled_ = false;
   VecHandle changed_, forces_, residual_;
-  VecHandle given_residual_, step_residual_; // of SNES; that which the next step is to make zero
+  VecHandle given_residual_, guessed_residual_; // of SNES; that which the first step is to make zero
+  bool is_guess_ = false;                       // the next linear solve is that of the first step
   std::vector<ConditionRows> assembled_rows_;
   std::vector<double> scaled_row_;                 // scratch
   PetscReal decrease_ = 0.0;                       // of a backtracking line search

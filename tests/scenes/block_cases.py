@@ -5,6 +5,7 @@ A block of height H whose sides carry the complementary shear is a spring of sti
 import numpy as np
 import yaml
 
+import common_checks
 import friction_laws
 import harness
 import references
@@ -373,8 +374,12 @@ def release(bench):
     steps = [("press", 1, 1), ("slide", 2, 20), ("unload", 3, 2), ("move", 4, 2), ("lift", 5, 2), ("close", 6, 4)]
     steps.append(("slide_again", 7, 40))
     parameters = gallery_laws()["slip_weakening"]
-    for enforce, depth in (({"semismooth": {}}, touching), ({"uzawa": {"tolerance": 1e-9}}, lifted)):
-        kind = next(iter(enforce))
+    kinds = {
+        "semismooth": ({"semismooth": {}}, touching),
+        "dual basis": (common_checks.DUAL, touching),
+        "uzawa": ({"uzawa": {"tolerance": 1e-9}}, lifted),
+    }
+    for kind, (enforce, depth) in kinds.items():
         history = bench.run(
             "friction_laws_gallery",
             {
@@ -407,7 +412,7 @@ def release(bench):
 
 def no_coefficient(bench):
     """mu = 0 is a frictionless block."""
-    for enforce in ({"semismooth": {}}, {"uzawa": {}}):
+    for enforce in ({"semismooth": {}}, common_checks.DUAL, {"uzawa": {}}):
         history = bench.run(
             "friction_laws_gallery", {"contact.0.friction": {"coulomb": {"mu": 0}}, "contact.0.enforce": enforce}
         ).history

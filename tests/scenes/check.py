@@ -10,6 +10,7 @@ from pathlib import Path
 
 import adapt_cases
 import block_cases
+import condensed_cases
 import finite_contact_cases
 import friction_cases
 import hertz_cases
@@ -36,6 +37,8 @@ for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case
 for scene, case in vi_cases.UNLOAD.items():
     CASES[scene]["vi_unload"] = case
+for scene, cases in condensed_cases.SCENES.items():
+    CASES[scene].update(cases)
 
 
 def main():

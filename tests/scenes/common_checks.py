@@ -4,6 +4,7 @@ import numpy as np
 # At the same alpha, multipliers found by an outer loop and as unknowns are the same. A larger alpha makes a penalty's
 # penetration smaller, and its pressure rougher where the meshes do not match.
 OTHERS = {"uzawa": {"uzawa": {"alpha": 1}}, "penalty": {"penalty": {"alpha": 30}}}
+DUAL = {"semismooth": {"basis": "dual"}}
 
 
 def formulations_agree(bench, scene, changes=None):

@@ -80,7 +80,8 @@ def cattaneo_mindlin_held(bench):
             {"name": "hold", "to": 3, "increments": 20},
         ],
     }
-    for name, enforce in {"semismooth": {"semismooth": {}}, **common_checks.OTHERS}.items():
+    formulations = {"semismooth": {"semismooth": {}}, "dual basis": common_checks.DUAL, **common_checks.OTHERS}
+    for name, enforce in formulations.items():
         results = bench.run("cattaneo_mindlin_2d", {**changes, "contact.*.enforce": enforce}, ranks=1)
         moved, held = results.history["displacement_top_x"], results.history["time"] >= 2.0 - 1e-9
         bench.below(f"{name}: motion while held / motion before", np.ptp(moved[held]) / np.abs(moved).max(), 1e-8)
@@ -177,16 +178,16 @@ def stack(bench):
         slid_stack(bench, name, bench.run("stack_with_friction_3d", {"contact.*.enforce": enforce}))
 
 
-def stack_ranks(bench):
+def stack_ranks(bench, changes=None):
     """Displacements and tractions on 2 and 3 ranks equal those on 1 to 1e-8 of their largest."""
-    reference = bench.run("stack_with_friction_3d", ranks=1)
+    reference = bench.run("stack_with_friction_3d", changes, ranks=1)
 
     def in_order(results, pair, field):
         places = np.round(results.points[pair]["places"], 9)
         return results.points[pair][field][np.lexsort(places.T)]
 
     for ranks in (2, 3):
-        results = bench.run("stack_with_friction_3d", ranks=ranks)
+        results = bench.run("stack_with_friction_3d", changes, ranks=ranks)
         exact = reference.nodal_sorted("displacement")
         error = np.abs(results.nodal_sorted("displacement") - exact).max() / np.abs(exact).max()
         bench.below(f"{ranks} ranks: displacement", error, 1e-8)

@@ -9,6 +9,7 @@ FORMULATIONS = {
     "uzawa": {"uzawa": {}},
     "penalty": {"penalty": {"alpha": 1e5}},
     "vi": {"vi": {}},
+    "dual": common_checks.DUAL,
 }
 
 
@@ -119,7 +120,7 @@ def run_segments(bench, scene, shape, up, formulations):
 
 
 def segments_2d(bench):
-    run_segments(bench, "patch_2d", "quads", 1, ["semismooth", "uzawa", "vi"])
+    run_segments(bench, "patch_2d", "quads", 1, ["semismooth", "uzawa", "vi", "dual"])
 
 
 def segments_3d(bench):
@@ -134,7 +135,11 @@ def segments_vi_3d(bench):
     run_segments(bench, "patch_3d", "hexes", 2, ["vi"])
 
 
+def segments_dual_3d(bench):
+    run_segments(bench, "patch_3d", "hexes", 2, ["dual"])
+
+
 CASES = {
     "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "vi": vi_2d, "projection": projection_2d, "segments": segments_2d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_2d")},
-    "patch_3d": {"elements": elements_3d, "formulations": formulations_3d, "segments": segments_3d, "segments_uzawa": segments_uzawa_3d, "segments_vi": segments_vi_3d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_3d")},
+    "patch_3d": {"elements": elements_3d, "formulations": formulations_3d, "segments": segments_3d, "segments_uzawa": segments_uzawa_3d, "segments_vi": segments_vi_3d, "segments_dual": segments_dual_3d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_3d")},
 }
