@@ -135,7 +135,7 @@ def normals_2d(bench):
     """Why exchanged slave and master differ: not which body is the slave, but where the normal comes from.
 
     On the round body it leans by up to a/R: pressure has a part q = p x / R along the surface, and the gap takes part in the
-    bodies' motion along it. Hertz has neither. By [J] 2.21 and 2.23 q changes the slope of a surface by
+    bodies' motion along it. Hertz has neither. By [J] 2.25 q changes the slope of a surface by
     (1 - 2 nu)(1 + nu) q / E, of a size of a/R (here 2 %) x (1 - 2 nu)/(2 - 2 nu) = 0.6 % of that by p. With R ten times as
     large, and the same half-width, the difference must be a tenth."""
     exchanged = {"contact.0.slave": "indenter_rim", "contact.0.master": "block_top"}
