@@ -55,6 +55,14 @@ def cattaneo_mindlin(bench):
         partial_slip(bench, results, ratio)
 
 
+def cattaneo_mindlin_segments(bench):
+    """The same with integration on segments."""
+    once = {f"steps.{i}.increments": 1 for i in (1, 2, 3)}
+    results = bench.run("cattaneo_mindlin_2d", {**once, "contact.0.integration": {"segment": {}}})
+    for ratio in RATIOS:
+        partial_slip(bench, results, ratio)
+
+
 def cattaneo_mindlin_convergence(bench):
     """The error falls with the cells' size; the increments of a force that only grows do not matter (here one for each
     ratio). Where a and c lie in their cells changes single errors, so that those of the three ratios are taken
@@ -178,6 +186,11 @@ def stack(bench):
         slid_stack(bench, name, bench.run("stack_with_friction_3d", {"contact.*.enforce": enforce}))
 
 
+def stack_segments(bench):
+    """Meshes of quadrangles on triangles, which segments cut exactly."""
+    slid_stack(bench, "segments", bench.run("stack_with_friction_3d", {"contact.*.integration": {"segment": {}}}))
+
+
 def stack_ranks(bench, changes=None):
     """Displacements and tractions on 2 and 3 ranks equal those on 1 to 1e-8 of their largest."""
     reference = bench.run("stack_with_friction_3d", changes, ranks=1)
@@ -245,8 +258,9 @@ def press_shear_path_control(bench):
 
 
 CASES = {
-    "cattaneo_mindlin_2d": {"reference": cattaneo_mindlin, "convergence": cattaneo_mindlin_convergence, "held": cattaneo_mindlin_held},
+    "cattaneo_mindlin_2d": {"reference": cattaneo_mindlin, "segments": cattaneo_mindlin_segments,
+                            "convergence": cattaneo_mindlin_convergence, "held": cattaneo_mindlin_held},
     "mindlin_sphere_cycling": {"reference": mindlin_cycling},
     "cylinder_press_shear_path": {"reference": press_shear_path, "path_control": press_shear_path_control},
-    "stack_with_friction_3d": {"reference": stack, "ranks": stack_ranks},
+    "stack_with_friction_3d": {"reference": stack, "segments": stack_segments, "ranks": stack_ranks},
 }

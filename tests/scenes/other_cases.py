@@ -51,6 +51,27 @@ def flat_punch(bench):
         bench.below(f"{name} against semismooth: largest difference at nodes", error[nodes].max(), 0.01)
 
 
+def overhanging_slave(bench):
+    """The half-plane as slave, which sticks out of the punch: its nodes beyond the edge carry nothing, and the one at the
+    edge, of whose support half is covered, has its share of the singular pressure."""
+    changes = {"contact.0.slave": "half_plane_top", "contact.0.master": "punch_face", "contact.0.integration": {"segment": {}}}
+    for name in ("semismooth", "vi"):
+        results = bench.run("flat_punch", {**changes, "contact.0.enforce": {name: {}}})
+        a, h = results.deck["mesh"]["parameters"]["a"], 1.0 / results.deck["mesh"]["parameters"]["n"]
+        x, pressure = results.surface["interface"]["places"][:, 0], results.surface["interface"]["pressure"].ravel()
+        force = results.force("interface")
+        bench.close(f"{name}: force", force, 10.0, 1e-6)
+        inside = x < 0.8 * a
+        exact = references.flat_punch_pressure(x[inside], 2.0 * force, a)
+        bench.below(f"{name}: largest error for x < 0.8 a", np.abs(pressure[inside] / exact - 1.0).max(), 0.03)
+        bench.below(f"{name}: pressure beyond the edge", np.abs(pressure[x > a + 0.5 * h]).max(), 0.0)
+        # from the middle between two nodes on, so that it is clear which of them counts
+        begin = (np.floor(0.9 * a / h) + 0.5) * h
+        points = results.points["interface"]
+        share = (points["pressure"] * points["weight"])[points["places"][:, 0] > begin].sum()
+        bench.close(f"{name}: force between 0.917 a and the edge", share, force * (1.0 - 2.0 / np.pi * np.arcsin(begin / a)), 0.05)
+
+
 def disc_stack(bench):
     """Forces between discs, walls, floor and lid against a closed form; balance of the free bodies."""
     results = bench.run("disc_stack")
@@ -107,7 +128,7 @@ def ranks(scene):
 
 
 CASES = {
-    "flat_punch": {"reference": flat_punch, "ranks": ranks("flat_punch")},
+    "flat_punch": {"reference": flat_punch, "overhang": overhanging_slave, "ranks": ranks("flat_punch")},
     "disc_stack": {"reference": disc_stack, "formulations": formulations("disc_stack"), "ranks": ranks("disc_stack")},
     "rigid_shapes": {
         "reference": rigid_shapes,
