@@ -13,6 +13,7 @@ import friction_cases
 import hertz_cases
 import other_cases
 import patch_cases
+import solver_cases
 import vi_cases
 from harness import Bench
 
@@ -23,6 +24,7 @@ CASES = {
     **friction_cases.CASES,
     **block_cases.CASES,
     **vi_cases.CASES,
+    **solver_cases.CASES,
 }
 for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case
