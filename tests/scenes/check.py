@@ -18,6 +18,7 @@ import obstacle_cases
 import other_cases
 import patch_cases
 import solid_cases
+import solver_cases
 import vi_cases
 from harness import Bench
 
@@ -32,6 +33,7 @@ CASES = {
     **obstacle_cases.CASES,
     **adapt_cases.CASES,
     **finite_contact_cases.CASES,
+    **solver_cases.CASES,
 }
 for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case

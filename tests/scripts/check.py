@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""scripts/study and scripts/report on small runs: tables, resume, failures, wrong studies, effects, pages."""
+"""scripts/study, scripts/report and scripts/bench on small runs: tables, resume, failures, wrong files, effects, pages."""
 import argparse
 import csv
 import html.parser
@@ -101,6 +101,42 @@ def study(case):
         path = case.study_file(case.hertz({"mesh": {"mesh.parameters.h": [0.2]}}, **limit), word.replace(" ", "_"))
         status, text = case.study(path, "--out", case.folder / word)
         case.expect(f"{word}: recorded", status == 0 and table_of(case.folder / word)[0]["outcome"] == word, text)
+
+
+def bench(case):
+    """The smallest size without peers: a row a run, ratios that are ratios, shares that add up; then a wrong bench."""
+    content = {"deck": str(TOP / "inputs/press_and_slide_3d/press_and_slide_3d.yaml"),
+               "settings": {"steps[0].increments": 1, "steps[1].increments": 3},
+               "quantities": {"shear": {"history": "reaction_base_bottom_x"}, "normal": {"history": "reaction_base_bottom_z"},
+                              "friction": {"expression": "-shear/normal", "reference": {"exact": 0.3}}},
+               "size": {"mesh.parameters.n": [5, 6]}, "solvers": {"semismooth": {}}, "ranks": [1, 2],
+               "peers": {"calculix": {}}}
+    path = case.folder / "small.bench.yaml"
+    path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    status, text = case.run("bench", path, "--no-peers", "--program", case.program)
+    case.expect("the bench ends with 0", status == 0, text)
+    rows = table_of(case.folder / "results/small_bench")
+    case.expect("a row a run: two of ours and two yardsticks a size", len(rows) == 8, rows)
+    case.expect("all are certified", all(row["outcome"] == "certified" for row in rows), rows)
+    ours, elastic, smooth = ([row for row in rows if row["program"] == name] for name in
+                             ("amontons", "elastic", "frictionless"))
+    case.expect("one linear solve", all(row["newton"] == row["increments"] == "1" for row in elastic), elastic)
+    case.expect("without friction there are fewer unknowns", int(smooth[0]["unknowns"]) < int(ours[0]["unknowns"]))
+    for row in ours:
+        yardstick, = (other for other in elastic if other["size"] == row["size"])
+        ratio = float(row["cpu_seconds"]) / float(yardstick["cpu_seconds"])
+        case.expect("the ratio to the elastic solve", abs(float(row["cpu_to_elastic"]) / ratio - 1.0) < 1e-4, row)
+        case.expect("and of an increment", abs(4 * float(row["increment_to_elastic"]) / ratio - 1.0) < 1e-4, row)
+        case.expect("the error of what slides", float(row["error_friction"]) < 1e-3, row)
+        total = sum(float(value) for name, value in row.items() if name.startswith("share_"))
+        case.expect("shares add up to one", abs(total - 1.0) < 1e-4, row)
+    picture = (case.folder / "results/small_bench/bench.png").read_bytes()
+    case.expect("there is a picture", picture[:8] == b"\x89PNG\r\n\x1a\n")
+    for change, message in (({"solver": {}}, "unknown key 'solver'"), ({"peers": {"abaqus": {}}}, "unknown key 'abaqus'"),
+                            ({"size": {"mesh.cells": [4]}}, "unknown knob 'mesh.cells'")):
+        path.write_text(yaml.safe_dump({**content, **change}, sort_keys=False), encoding="utf-8")
+        status, text = case.run("bench", path, "--program", case.program)
+        case.expect(f"refused: {message}", status == 2 and message in text, text)
 
 
 def resume(case):
@@ -326,7 +362,7 @@ def report(case):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     cases = {"study": study, "resume": resume, "wrong_study": wrong_study, "effects": effects, "report": report,
-             "plan": plan, "wrong_plan": wrong_plan}
+             "plan": plan, "wrong_plan": wrong_plan, "bench": bench}
     parser.add_argument("case", choices=cases)
     parser.add_argument("--program", required=True)
     arguments = parser.parse_args()
