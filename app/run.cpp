@@ -62,6 +62,7 @@ class Run {
   int compare_halves(Stretch& stretch, const SolveOutcome& outcome, double seconds);
   int control_path(Stretch& stretch, const SolvedState& whole, const std::vector<SolvedState>& halves, double seconds);
   PathDifference difference(const SolvedState& whole, const std::vector<SolvedState>& halves);
+  bool is_cutback_asked_for();
   void count(const SolveOutcome& outcome);
   void accept(const Stretch& stretch, const SolveOutcome& outcome, double path_error);
   void write_checkpoint_file(const Stretch& stretch);
@@ -211,12 +212,22 @@ int Run::march_step(std::size_t step) {
       status = stop(stretch);
     else if (!outcome.converged)
       status = cut_back(stretch, target, outcome.reason);
+    else if (is_cutback_asked_for())
+      status = cut_back(stretch, target, "-cutback_at asks for a cutback here, though it was");
     else if (stretch.path || scene_->deck.estimate_path_error)
       status = compare_halves(stretch, outcome, now() - begun);
     else
       status = accept_whole(stretch, outcome);
   }
   return status;
+}
+
+/// The option -cutback_at N: the increment after N accepted ones is given up once, although it converged. Nothing but
+/// the length of increments may change by that.
+bool Run::is_cutback_asked_for() {
+  PetscInt after = -1;
+  AMT_PETSC(PetscOptionsGetInt(nullptr, nullptr, "-cutback_at", &after, nullptr));
+  return after == increments_ && cutbacks_ == 0;
 }
 
 void Run::count(const SolveOutcome& outcome) {
