@@ -146,28 +146,6 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
 }
 
-/// From a first failure on, steps are looked at before they are taken, at the price of a residual each.
-void Newton::guard_domain() {
-  SNESLineSearch search = nullptr;
-  AMT_PETSC(SNESGetLineSearch(snes_, &search));
-  AMT_PETSC(SNESLineSearchSetPreCheck(search, stay_in_domain, this));
-}
-
-/// Halves a step that leads where there is no residual (cells turned inside out), before any line search sees it.
-PetscErrorCode Newton::stay_in_domain(SNESLineSearch, Vec start, Vec step, PetscBool* changed, void* self) {
-  constexpr int most_halvings = 8;
-  auto& newton = *static_cast<Newton*>(self);
-  return guarded(newton.kept_, [&] {
-    const auto next = newton.problem_.layout().new_vector(), force = newton.problem_.layout().new_vector();
-    for (int halving = 0; halving < most_halvings; ++halving) {
-      AMT_PETSC(VecWAXPY(next, -1.0, step, start));
-      if (newton.problem_.residual(next, force)) return;
-      AMT_PETSC(VecScale(step, 0.5));
-      *changed = PETSC_TRUE;
-    }
-  });
-}
-
 /// Backtracking goes back until |F|² has fallen by alpha of what the tangent promises. A tangent that is no derivative
 /// promises nothing: with a large negative alpha its full step passes.
 void Newton::ask_for_decrease(bool is_asked) {
@@ -227,7 +205,6 @@ SolveOutcome Newton::solve(Vec unknowns) {
   AMT_PETSC(code);
   SolveOutcome outcome = outcome_of(snes_, problem_);
   outcome.factorizations = factorizations_;
-  if (!outcome.converged && !problem_.failure().empty()) guard_domain();
   return outcome;
 }
 
