@@ -45,6 +45,8 @@ IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted
     return;
   }
   chosen_rungs(); // a wrong name is found before anything is solved
+  // Full Newton steps go in circles where points switch between elastic and plastic.
+  if (scene.bulk->wants_predictor()) default_option("-snes_linesearch_type", SNESLINESEARCHBT);
   linear_solver_ = choose_newton_solver(*scene.problem);
   newton_ = std::make_unique<Newton>(*scene.problem, std::move(interrupted));
   uzawa_ = make_uzawa(scene, *newton_);
@@ -111,9 +113,12 @@ void IncrementSolver::commit() {
   const double duration = scene_.problem->time() - scene_.problem->accepted_time();
   scene_.problem->commit(unknowns_);
   if (scene_.bulk->wants_predictor()) {
-    rate_ = copy_of(unknowns_);
-    AMT_PETSC(VecAXPY(rate_, -1.0, accepted_));
-    AMT_PETSC(VecScale(rate_, 1.0 / duration));
+    VecHandle step = copy_of(unknowns_);
+    AMT_PETSC(VecAXPY(step, -1.0, accepted_));
+    AMT_PETSC(VecScale(step, 1.0 / duration));
+    const auto rate = scene_.problem->state_at(step).displacement;
+    rate_ = scene_.layout->new_vector(); // without multipliers
+    scene_.layout->put_displacement(rate, rate_);
   }
   resume();
 }
@@ -125,6 +130,20 @@ void IncrementSolver::roll_back() {
 }
 
 void IncrementSolver::resume() { AMT_PETSC(VecCopy(unknowns_, accepted_)); }
+
+void IncrementSolver::save(Checkpoint& checkpoint) const {
+  if (!rate_) return;
+  NodalArray rate{scene_.mesh.dim, std::vector<double>(std::size_t(scene_.mesh.num_local()) * scene_.mesh.dim)};
+  scene_.layout->gather_displacement(rate_, rate.values);
+  checkpoint.nodal["displacement_rate"] = std::move(rate);
+}
+
+void IncrementSolver::restore(const Checkpoint& checkpoint) {
+  const auto stored = checkpoint.nodal.find("displacement_rate");
+  if (stored == checkpoint.nodal.end()) return;
+  rate_ = scene_.layout->new_vector();
+  scene_.layout->put_displacement(stored->second.values, rate_);
+}
 
 SolvedState IncrementSolver::put_aside(const SolveOutcome& outcome) {
   const auto state = scene_.problem->state_at(unknowns_);

@@ -2,6 +2,7 @@
 // that was solved before. Owns the solver and the unknowns.
 #pragma once
 
+#include "output/checkpoint.hpp"
 #include "scene.hpp"
 #include "solve/bounded_newton.hpp"
 #include "solve/condensed_newton.hpp"
@@ -50,6 +51,9 @@ class IncrementSolver {
   void roll_back();
   /// Takes what a restart has put into the unknowns for the last accepted state.
   void resume();
+  /// What the next increment begins from besides the state, into a checkpoint and back (after resume()). Collective.
+  void save(Checkpoint& checkpoint) const;
+  void restore(const Checkpoint& checkpoint);
 
   /// A copy of what solve() has found. Collective.
   SolvedState put_aside(const SolveOutcome& outcome);
@@ -76,7 +80,7 @@ class IncrementSolver {
   std::optional<Trouble> trouble_;
   double target_ = 0.0; // of the increment being solved
   VecHandle unknowns_, accepted_;
-  VecHandle rate_; // change of the unknowns over time in the last accepted increment; absent: not to be extrapolated
+  VecHandle rate_; // of the displacements in the last accepted increment; absent: not to be extrapolated
 };
 
 } // namespace amontons

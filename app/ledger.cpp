@@ -212,7 +212,8 @@ void Ledger::accept(Vec unknowns) {
   take_artificial_work(unknowns);
   const double internal_work = scene_.internal_work(unknowns);
   virtual_work_defect_ = here[3] - contact_work - internal_work;
-  virtual_work_scale_ = here[4] + std::abs(internal_work);
+  // A plastic body that is back in its place has stresses left, whose work on its displacement cancels.
+  virtual_work_scale_ = here[4] + std::abs(internal_work) + bulk_dissipation_;
   AMT_PETSC(VecCopy(external_, external_old_));
   AMT_PETSC(VecCopy(unknowns, unknowns_old_));
 }

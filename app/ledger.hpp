@@ -39,7 +39,8 @@ class Ledger {
   double dissipated_energy() const;
   const std::vector<double>& dissipated_by_pair() const { return dissipated_; }
   /// e · u − ∫ (σ (g − g0) + σ_t · u) − W at the state, W the work of the stresses on the displacement
-  /// (SolidForm::internal_work): zero in equilibrium; and its scale |e · u| + |W|.
+  /// (SolidForm::internal_work): zero in equilibrium; and its scale Σ |e · u| + |W| + what the
+  /// bodies have dissipated.
   double virtual_work_defect() const { return virtual_work_defect_; }
   double virtual_work_scale() const { return virtual_work_scale_; }
   /// Applied loads and support reactions by node: num_local x dim, this rank's parts. Collective.

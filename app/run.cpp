@@ -129,6 +129,7 @@ void Run::restart() {
   increments_ = checkpoint.increment;
   restore_state(*scene_, *ledger_, checkpoint, solver_->unknowns());
   solver_->resume();
+  solver_->restore(checkpoint);
   if (path_ && checkpoint.global.contains("path")) {
     path_->restore(checkpoint);
     resume_path_taken_ = checkpoint.global.at("path_taken").at(0);
@@ -382,6 +383,7 @@ void Run::accept(const Stretch& stretch, const SolveOutcome& outcome, double pat
 
 void Run::write_checkpoint_file(const Stretch& stretch) {
   auto checkpoint = make_checkpoint(*scene_, *ledger_, solver_->unknowns());
+  solver_->save(checkpoint);
   checkpoint.step = static_cast<int>(stretch.step);
   checkpoint.increment = increments_;
   checkpoint.next_increment = stretch.control.increment();

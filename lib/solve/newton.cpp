@@ -261,28 +261,6 @@ PetscErrorCode Newton::search_energy(SNESLineSearch search, void* self) {
   });
 }
 
-/// From a first failure on, steps are looked at before they are taken, at the price of a residual each.
-void Newton::guard_domain() {
-  SNESLineSearch search = nullptr;
-  AMT_PETSC(SNESGetLineSearch(snes_, &search));
-  AMT_PETSC(SNESLineSearchSetPreCheck(search, stay_in_domain, this));
-}
-
-/// Halves a step that leads where there is no residual (cells turned inside out), before any line search sees it.
-PetscErrorCode Newton::stay_in_domain(SNESLineSearch, Vec start, Vec step, PetscBool* changed, void* self) {
-  constexpr int most_halvings = 8;
-  auto& newton = *static_cast<Newton*>(self);
-  return guarded(newton.kept_, [&] {
-    const auto next = newton.problem_.layout().new_vector(), force = newton.problem_.layout().new_vector();
-    for (int halving = 0; halving < most_halvings; ++halving) {
-      AMT_PETSC(VecWAXPY(next, -1.0, step, start));
-      if (newton.problem_.residual(next, force)) return;
-      AMT_PETSC(VecScale(step, 0.5));
-      *changed = PETSC_TRUE;
-    }
-  });
-}
-
 PetscErrorCode Newton::evaluate_residual(SNES, Vec unknowns, Vec result, void* self) {
   auto& newton = *static_cast<Newton*>(self);
   return guarded(newton.kept_,
@@ -378,7 +356,6 @@ SolveOutcome Newton::solve(Vec unknowns) {
     outcome.factorizations = kept_factorization_->factorizations();
     outcome.linear = kept_factorization_->iterations();
   }
-  if (!outcome.converged && !problem_.failure().empty()) guard_domain();
   return outcome;
 }
 

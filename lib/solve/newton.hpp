@@ -98,8 +98,6 @@ class Newton {
                                          SNESConvergedReason* reason, void* self);
   static PetscErrorCode search_energy(SNESLineSearch search, void* self);
   void observe(double norm);
-  static PetscErrorCode stay_in_domain(SNESLineSearch, Vec start, Vec step, PetscBool* changed, void* self);
-  void guard_domain();
   void predict(Vec unknowns);
 
   Problem& problem_;

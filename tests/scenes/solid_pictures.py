@@ -104,7 +104,9 @@ def pressed_rubber_block(bench):
     return figure
 
 
-SCENES = {function.__name__: function for function in (cook_membrane, inflated_cylinder, necking_bar, pressed_rubber_block)}
+SCENES = {
+    function.__name__: function for function in (cook_membrane, inflated_cylinder, necking_bar, pressed_rubber_block)
+}
 
 
 def main():
