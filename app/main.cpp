@@ -2,6 +2,7 @@
 #include "base/petsc.hpp"
 #include "commands.hpp"
 
+#include <cstdlib>
 #include <iostream>
 
 namespace {
@@ -20,6 +21,9 @@ int give_up(const std::exception& error) {
 } // namespace
 
 int main(int argc, char** argv) {
+  // SCOTCH 7 orders with all cores and so differently at each run: the last digits of results would change. One thread
+  // a rank gives the same bits each time.
+  setenv("SCOTCH_PTHREAD_NUMBER", "1", 0);
   const auto arguments = amontons::split_arguments({argv + 1, argv + argc});
   // PETSc sees its own words only: it would take a deck for the value of the flag before it.
   std::vector<std::string> words = arguments.petsc;

@@ -160,6 +160,24 @@ TEST_CASE("held points: one at a time breaks a cycle") {
   CHECK_FALSE(one.plain().converged); // nothing is held any more
 }
 
+TEST_CASE("lagged limits: a bound that depends on what it bounds is found by taking it for given, again and again") {
+  // h(u) = u − g(u) is soft beyond |u| = 1, where full steps jump from 18 to −18 and back: 18 − h(18) / 0.1 = −18. The
+  // slope of g is −0.9 or 0.9, so u = g(u) contracts.
+  const auto h = [](double u) {
+    return std::abs(u) <= 1.0 ? 1.9 * u : std::copysign(1.9 + 0.1 * (std::abs(u) - 1.0), u);
+  };
+  Case one(2, {18.0, -18.0}, [&](const auto& layout) {
+    return std::make_unique<SelfLimited>(
+        layout, [h](double u) { return u - h(u); }, [](double u) { return std::abs(u) <= 1.0 ? -0.9 : 0.9; });
+  });
+  CHECK_FALSE(one.plain().converged);
+  const auto outcome = one.ladder.attempt(LaggedLimits{}, one.u);
+  CAPTURE(outcome.reason);
+  CHECK(outcome.converged);
+  CHECK(one.error({0.0, 0.0}) < 1e-9);
+  CHECK_FALSE(one.plain().converged); // nothing is held any more
+}
+
 TEST_CASE("vanishing support: what would pass through a wall is led up to it, and nothing of the support is left") {
   Case one(
       2, {0.0, 0.0}, [](const auto& layout) { return std::make_unique<Scalar>(layout, wall, wall_slope); }, -0.5);

@@ -45,6 +45,58 @@ class Scalar : public Form {
   Function force_, slope_;
 };
 
+/// u − g(u) = 0 for every displacement component by itself, g being a limit that depends on what it limits, as that of
+/// friction does: u is carried up to the limit.
+class SelfLimited : public Form, public Switching {
+ public:
+  using Function = std::function<double(double)>;
+  SelfLimited(const DofLayout& layout, Function limit, Function slope)
+      : layout_(layout), limit_(std::move(limit)), slope_(std::move(slope)),
+        last_(std::size_t(layout.mesh().num_owned) * layout.dim(), 0.0) {}
+
+  const char* name() const override { return "self-limited"; }
+  bool tangent_is_symmetric() const override { return false; }
+  void couple(Coupling& coupling) const override {
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      const PetscInt equation = equation_of(i);
+      coupling.add({&equation, 1});
+    }
+  }
+  void add_residual(const State& state, Residual& residual) override {
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      last_[i] = held_.empty() ? limit_(state.displacement[i]) : held_[i];
+      residual.nodal()[i] += state.displacement[i] - last_[i];
+    }
+  }
+  void add_tangent(const State& state, Tangent& tangent) override {
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      const PetscInt equation = equation_of(i);
+      const double value = held_.empty() ? 1.0 - slope_(state.displacement[i]) : 1.0;
+      tangent.add({&equation, 1}, {&value, 1});
+    }
+  }
+
+  Switching* switching() override { return this; }
+  const std::string& switch_name() const override { return name_; }
+  std::array<double, 3> switch_place(std::size_t) const override { return {}; }
+  std::vector<std::uint8_t> branches() const override { return {}; }
+  void hold(std::vector<Hold>) override {}
+  std::vector<std::uint8_t> wanted() const override { return {}; }
+  bool has_limits() const override { return true; }
+  void hold_limits() override { held_ = last_; }
+  void release_limits() override { held_.clear(); }
+  void scale_augmentation(double) override {}
+
+ private:
+  PetscInt equation_of(std::size_t i) const {
+    return layout_.equation(static_cast<std::int32_t>(i) / layout_.dim(), static_cast<int>(i) % layout_.dim());
+  }
+  const DofLayout& layout_;
+  Function limit_, slope_;
+  std::vector<double> last_, held_;
+  std::string name_ = "limits";
+};
+
 /// Two or three complementary pairs at each node, z the displacement: F_i = min(z_i, w_i), w = M z + q. Component i is
 /// on where z_i > w_i: then F_i = w_i.
 class Complementarity : public Form, public Switching {

@@ -1,0 +1,88 @@
+#!/usr/bin/python3
+"""Each remedy alone: remedies.py --program PATH.
+
+A tall block pushed at its top, which rocks on its edge (the scene `rocking` of scenes.py), in one increment a step that may
+not be cut, with augmentations, friction and steps that plain iterations do not get through. Each case is run with no
+remedy, must end with status 3 and a diagnosis, and with one, must be certified, meet the scene's own figures, and say in
+the summary that the remedy has helped. A run that gives up must leave a checkpoint and its last iterate.
+"""
+import argparse
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+import yaml
+from run import PENALTY_TOLERANCE, Results, start
+from scenes import SCENES
+
+# Remedy: scene, seed of the mesh, enforcement, friction coefficient (None: the scene's own), PETSc options.
+CASES = {
+    "merit_search": ("rocking", 0, {"semismooth": {"alpha": 100}}, None, []),
+    "held_points": ("rocking", 0, {"penalty": {"alpha": 1e4}}, 2.0, []),
+    "softer_augmentation": ("rocking", 0, {"penalty": {"alpha": 1e4}}, None, []),
+    "vanishing_support": ("rocking", 0, {"penalty": {"alpha": 1e4}}, 2.0, ["-snes_linesearch_type", "basic"]),
+}
+
+
+def examine(options, remedy, root):
+    """What is wrong with the case, as a list of words."""
+    name, seed, enforce, mu, words = CASES[remedy]
+    folder = Path(root) / remedy
+    folder.mkdir()
+    mesh, deck, check = SCENES[name].make(seed)
+    mesh.write(folder / "mesh.msh")
+    for contact in deck["contact"]:
+        contact["enforce"] = enforce
+        if mu:
+            contact["friction"] = {"coulomb": {"mu": mu}}
+    for step in deck["steps"]:
+        step["increments"] = {"auto": {"first": 1.0, "smallest": 1.0}}
+    deck.pop("output", None)
+    path = folder / "deck.yaml"
+    path.write_text(yaml.safe_dump(deck, sort_keys=False), encoding="utf-8")
+    faults = []
+
+    def run(chosen):
+        done = start(options, 1, [path, "--out", folder / chosen, *words, "-remedies", chosen])
+        summary = json.loads((folder / chosen / "summary.json").read_text(encoding="utf-8"))
+        return done.returncode, summary, done.stdout
+
+    status, summary, said = run("none")
+    if status != 3:
+        faults.append(f"ends with {status} without a remedy")
+    else:
+        if "reason" not in summary.get("diagnosis", {}) or "giving up" not in said:
+            faults.append("no diagnosis without a remedy")
+        for left in ("checkpoint.h5", "failed.h5", "failed.xdmf"):
+            if not (folder / "none" / left).exists():
+                faults.append(f"{left} is missing without a remedy")
+    status, summary, said = run(remedy)
+    if status != 0:
+        return [*faults, f"ends with {status} with the remedy\n{said[-1500:]}"]
+    if not summary["remedies"].get(remedy, {}).get("helped"):
+        faults.append(f"the remedy was not what helped: {summary['remedies']}")
+    for what, error, tolerance in check(Results(deck, folder / remedy)):
+        if not error <= (max(tolerance, PENALTY_TOLERANCE) if "penalty" in enforce else tolerance):
+            faults.append(f"{what}: off by {error:.3g}")
+    return faults
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("remedies", nargs="*", metavar="REMEDY", help=", ".join(CASES))
+    parser.add_argument("--program", required=True, help="the amontons executable")
+    parser.add_argument("--mpirun", default="mpirun --oversubscribe --bind-to none", help="how ranks are started")
+    options = parser.parse_args()
+    options.program = str(Path(options.program).resolve())
+    failed = 0
+    with tempfile.TemporaryDirectory() as root:
+        for remedy in options.remedies or CASES:
+            faults = examine(options, remedy, root)
+            failed += bool(faults)
+            print(f"{'FAIL' if faults else 'ok  '} {remedy} {'; '.join(faults)}", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
