@@ -64,7 +64,13 @@ ObjectRule<MaterialDeck> material_rule() {
   ObjectRule<MaterialDeck> rule;
   rule.choice(&MaterialDeck::law, bulk_material_rule())
       .optional("density", &MaterialDeck::density, number("mass / length^3", Range::at_least(0)),
-                "Mass density; body_force expressions know it as rho.");
+                "Mass density; body_force expressions know it as rho. Also tells whether inertia may be left out.")
+      .optional(
+          "yield_stress", &MaterialDeck::yield_stress, number("stress", Range::above(0)),
+          "Stress at which the material yields; changes nothing, but the summary then tells whether it was reached.")
+      .optional(
+          "heat_capacity", &MaterialDeck::heat_capacity, number("energy / (mass temperature)", Range::above(0)),
+          "Specific heat capacity; changes nothing, but the summary then tells how warm friction makes the bodies.");
   return rule;
 }
 

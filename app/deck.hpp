@@ -27,7 +27,10 @@ struct MeshDeck {
 
 struct MaterialDeck {
   BulkMaterial law;
-  double density = 0.0; // rho, used by body_force expressions as the constant 'rho' only
+  double density = 0.0; // rho: for body_force expressions, and for the audit of effects
+  // For the audit of effects only:
+  std::optional<double> yield_stress;
+  std::optional<double> heat_capacity; // per mass
 };
 
 /// Components that are absent are free (displacement) or zero (forces).

@@ -6,6 +6,7 @@
 #include "base/log.hpp"
 #include "base/timer.hpp"
 #include "certify.hpp"
+#include "effects_audit.hpp"
 #include "error_budget.hpp"
 #include "increment_solver.hpp"
 #include "ledger.hpp"
@@ -94,7 +95,8 @@ class Run {
       factorizations_ = 0;
   nlohmann::ordered_json diagnosis_; // of a run that gave up
   CertificateRecord certificate_;
-  double largest_residual_ = 0.0; // of the accepted increments
+  std::optional<MotionRecord> motion_; // absent unless a material has a density
+  double largest_residual_ = 0.0;      // of the accepted increments
   std::vector<ContactTotals> last_totals_;
   std::optional<std::vector<ContactSamples>> last_samples_; // absent until an increment is accepted
 };
@@ -110,6 +112,7 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments, Adaptation* adaptation)
       *scene_, [this] { return stop_requested_ = interrupted(comm_); },
       [this](const std::string& line) { log_.line("  " + line); });
   if (measures_path(scene_->deck)) path_.emplace();
+  if (MotionRecord::wanted(scene_->deck)) motion_.emplace();
   if (arguments_.restart) restart();
 }
 
@@ -366,6 +369,7 @@ void Run::accept(const Stretch& stretch, const SolveOutcome& outcome, double pat
     report.certified =
         certificate_.add(certify_state(*scene_, *ledger_, samples, solver_->accepted(), unknowns), state.time);
   }
+  if (motion_) motion_->add(*scene_, solver_->accepted(), unknowns);
   solver_->commit();
 
   const Phase phase("output");
@@ -438,6 +442,11 @@ void Run::judge_accuracy(nlohmann::ordered_json& summary) {
                                     .largest_residual = largest_residual_,
                                     .wall_seconds = now() - started_});
   summary["effects"] = audit_effects(*scene_, solver_->accepted());
+  summary["effects"].update(audit_absent_effects({.scene = *scene_,
+                                                  .unknowns = solver_->accepted(),
+                                                  .samples = *last_samples_,
+                                                  .ledger = *ledger_,
+                                                  .motion = motion_ ? &*motion_ : nullptr}));
   log_.line("  " + budget_sentence(summary["errors"]));
   for (const auto& line : audit_warnings(summary["effects"]))
     log_.line("  warning: " + line);

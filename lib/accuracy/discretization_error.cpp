@@ -13,7 +13,7 @@ namespace amontons {
 
 namespace {
 
-using accuracy::PatchRecovery;
+using accuracy::PatchRecovery, accuracy::PointRows;
 
 constexpr std::size_t statuses = 3; // of ContactStatus
 
@@ -57,7 +57,7 @@ ErrorRule error_rule(const Tabulation& own) {
 }
 
 /// Volumes that the points of the rule stand for in a cell of volume Σ `own`; on curved sides to first order.
-Eigen::VectorXd volumes(const ErrorRule& rule, std::span<const double> own) {
+accuracy::PointColumn volumes(const ErrorRule& rule, std::span<const double> own) {
   const Eigen::Map<const Eigen::VectorXd> given(own.data(), own.size());
   if (rule.continuation.size() == 0) return given;
   const auto& weights = rule.table->rule->weights;
@@ -103,12 +103,12 @@ std::array<double, 2> squares(const PatchRecovery& recovery, const ErrorRule& ru
   const auto own = batch.weights.subspan(c * points, points);
   PointBatch fine = batch;
   fine.table = rule.table;
-  Eigen::MatrixXd fields = accuracy::point_fields(batch, c);
-  if (rule.continuation.size() > 0) fields = rule.continuation * fields;
-  const Eigen::MatrixXd error =
+  PointRows fields = accuracy::point_fields(batch, c);
+  if (rule.continuation.size() > 0) fields = PointRows(rule.continuation.lazyProduct(fields));
+  const PointRows error =
       recovery.at(*batch.block, batch.first_cell + c, accuracy::point_places(mesh, fine, c), rule.corners) - fields;
-  const Eigen::VectorXd volume = volumes(rule, own);
-  const auto work = [&](const Eigen::MatrixXd& f) {
+  const accuracy::PointColumn volume = volumes(rule, own);
+  const auto work = [&](const PointRows& f) {
     const auto half = f.cols() / 2;
     return f.leftCols(half).cwiseProduct(f.rightCols(half)).rowwise().sum().dot(volume);
   };

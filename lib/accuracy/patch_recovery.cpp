@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 namespace amontons::accuracy {
 
@@ -63,9 +64,10 @@ std::vector<NodeField> corners_of_bodies(const Mesh& mesh) {
 
 int num_terms(int dim, int order) { return order == 1 ? 1 + dim : 1 + dim + dim * (dim + 1) / 2; }
 
-Eigen::MatrixXd point_places(const Mesh& mesh, const PointBatch& batch, std::int32_t c) {
+PointRows point_places(const Mesh& mesh, const PointBatch& batch, std::int32_t c) {
+  if (batch.table->rule->size() > most_points) throw std::logic_error("a quadrature has more points than most_points");
   const auto nodes = batch.block->cell(batch.first_cell + c);
-  Eigen::MatrixXd places = Eigen::MatrixXd::Zero(batch.table->rule->size(), mesh.dim);
+  PointRows places = PointRows::Zero(batch.table->rule->size(), mesh.dim);
   for (int q = 0; q < places.rows(); ++q)
     for (std::size_t a = 0; a < nodes.size(); ++a)
       for (int i = 0; i < mesh.dim; ++i)
@@ -88,12 +90,12 @@ void each_weighed_batch(SolidForm& solid, const State& state, const std::functio
   });
 }
 
-Eigen::MatrixXd point_fields(const PointBatch& batch, std::int32_t c) {
+PointRows point_fields(const PointBatch& batch, std::int32_t c) {
   const int points = batch.table->rule->size();
   const auto components = static_cast<int>(batch.strain.size() / batch.weights.size());
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const std::size_t first = std::size_t(c) * points * components;
-  Eigen::MatrixXd fields(points, 2 * components);
+  PointRows fields(points, 2 * components);
   fields << Eigen::Map<const Rows>(&batch.strain[first], points, components),
       Eigen::Map<const Rows>(&batch.stress[first], points, components);
   return fields;
@@ -121,15 +123,23 @@ void PatchRecovery::number_patches() {
   sums_.assign(count * stride_, 0.0);
 }
 
+/// Of a place from a node; the third component is zero in the plane.
+Eigen::Vector3d PatchRecovery::distance(const PointRows& places, Eigen::Index row, std::int32_t node) const {
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  for (int i = 0; i < mesh_.dim; ++i)
+    result[i] = places(row, i) - mesh_.position(node)[i];
+  return result;
+}
+
 /// The polynomial's terms at a distance from the node of the patch.
-Eigen::VectorXd PatchRecovery::terms(Eigen::VectorXd distance) const {
-  Eigen::VectorXd result(terms_);
-  const auto dim = distance.size();
+TermColumn PatchRecovery::terms(const Eigen::Vector3d& distance) const {
+  TermColumn result(terms_);
+  const int dim = mesh_.dim;
   result[0] = 1.0;
-  result.segment(1, dim) = distance;
+  result.segment(1, dim) = distance.head(dim);
   Eigen::Index next = 1 + dim;
-  for (Eigen::Index i = 0; i < dim && next < terms_; ++i)
-    for (Eigen::Index j = i; j < dim; ++j)
+  for (int i = 0; i < dim && next < terms_; ++i)
+    for (int j = i; j < dim; ++j)
       result[next++] = distance[i] * distance[j];
   return result;
 }
@@ -138,12 +148,12 @@ Eigen::VectorXd PatchRecovery::terms(Eigen::VectorXd distance) const {
 void PatchRecovery::add_cells(const PointBatch& batch) {
   const Eigen::MatrixXd samples = sampling(*batch.table);
   for (std::int32_t c = 0; c < batch.num_cells; ++c) {
-    const Eigen::MatrixXd places = samples * point_places(mesh_, batch, c), fields = samples * point_fields(batch, c);
+    const PointRows places = samples.lazyProduct(point_places(mesh_, batch, c)),
+                    fields = samples.lazyProduct(point_fields(batch, c));
     const auto nodes = batch.block->cell(batch.first_cell + c);
     for (int a = 0; a < num_vertices(batch.block->type); ++a) {
-      const Eigen::Map<const Eigen::VectorXd> origin(mesh_.position(nodes[a]).data(), mesh_.dim);
       for (Eigen::Index s = 0; s < samples.rows(); ++s) {
-        const Eigen::VectorXd t = terms(places.row(s).transpose() - origin);
+        const TermColumn t = terms(distance(places, s, nodes[a]));
         double* sum = &sums_[patch(batch.block->body, nodes[a]) * stride_];
         for (int k = 0; k < terms_; ++k)
           for (int l = k; l < terms_; ++l)
@@ -165,6 +175,9 @@ void PatchRecovery::add_boundary() {
 
 /// Every part of the normal equations is a sum over cells, so each rank adds up its own and no cell travels.
 void PatchRecovery::sum_over_ranks() {
+  int ranks = 1;
+  MPI_Comm_size(mesh_.comm, &ranks);
+  if (ranks == 1) return;
   const NodeSpace space(mesh_, nodes_);
   std::vector<std::vector<double>> part(nodes_.size());
   for (std::size_t k = 0; k < stride_; ++k) {
@@ -209,7 +222,8 @@ void PatchRecovery::fit() {
 /// Solves the normal equations, scaled to a unit diagonal so that the unit of length does not matter.
 PatchRecovery::Standing PatchRecovery::fit_patch(std::span<const double> sums, bool on_boundary,
                                                  std::span<double> coefficients) const {
-  Eigen::MatrixXd normal(terms_, terms_);
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_terms, most_terms>;
+  Square normal(terms_, terms_);
   std::size_t next = 0;
   for (int k = 0; k < terms_; ++k)
     for (int l = k; l < terms_; ++l)
@@ -218,8 +232,8 @@ PatchRecovery::Standing PatchRecovery::fit_patch(std::span<const double> sums, b
   const Eigen::Map<const Rows> right(&sums[next], terms_, fields_);
   Eigen::Map<Rows> result(coefficients.data(), terms_, fields_);
   if (normal.diagonal().minCoeff() > 0.0) {
-    const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::LDLT<Eigen::MatrixXd> factor(scale.asDiagonal() * normal * scale.asDiagonal());
+    const TermColumn scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::LDLT<Square> factor(scale.asDiagonal() * normal * scale.asDiagonal());
     if (factor.info() == Eigen::Success && factor.vectorD().minCoeff() > least_condition) {
       result = scale.asDiagonal() * factor.solve(scale.asDiagonal() * right);
       return on_boundary ? Standing::OneSided : Standing::Surrounded;
@@ -231,14 +245,14 @@ PatchRecovery::Standing PatchRecovery::fit_patch(std::span<const double> sums, b
 }
 
 /// Σ_a N_a(x) f_a(x) over the corners whose polynomials can be trusted most; they share what N_a the others have.
-Eigen::MatrixXd PatchRecovery::at(const CellBlock& block, std::int32_t c, const Eigen::MatrixXd& places,
-                                  const Eigen::MatrixXd& corners) const {
+PointRows PatchRecovery::at(const CellBlock& block, std::int32_t c, const PointRows& places,
+                            const Eigen::MatrixXd& corners) const {
   const auto nodes = block.cell(c).first(num_vertices(block.type));
   Standing best = Standing::Mean;
   for (const auto node : nodes)
     best = std::max(best, standing_[patch(block.body, node)]);
   int trusted = 0;
-  Eigen::VectorXd share = Eigen::VectorXd::Ones(places.rows());
+  PointColumn share = PointColumn::Ones(places.rows());
   for (std::size_t a = 0; a < nodes.size(); ++a)
     if (standing_[patch(block.body, nodes[a])] == best) {
       ++trusted;
@@ -246,14 +260,14 @@ Eigen::MatrixXd PatchRecovery::at(const CellBlock& block, std::int32_t c, const 
     }
   share /= trusted;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(places.rows(), fields_);
+  PointRows result = PointRows::Zero(places.rows(), fields_);
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     const std::size_t number = patch(block.body, nodes[a]);
     if (standing_[number] != best) continue;
     const Eigen::Map<const Rows> polynomial(&coefficients_[number * terms_ * fields_], terms_, fields_);
-    const Eigen::Map<const Eigen::VectorXd> origin(mesh_.position(nodes[a]).data(), mesh_.dim);
     for (Eigen::Index q = 0; q < places.rows(); ++q)
-      result.row(q) += (corners(q, a) + share[q]) * terms(places.row(q).transpose() - origin).transpose() * polynomial;
+      result.row(q) +=
+          (corners(q, a) + share[q]) * terms(distance(places, q, nodes[a])).transpose().lazyProduct(polynomial);
   }
   return result;
 }

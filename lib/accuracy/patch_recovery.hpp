@@ -8,18 +8,25 @@
 
 namespace amontons::accuracy {
 
+// Matrices of a cell live on the stack: there are many cells, and memory management would cost more than arithmetic.
+inline constexpr int most_points = 64, most_fields = 12, most_terms = 10;
+/// One point a row.
+using PointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_points, most_fields>;
+using PointColumn = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_points, 1>;
+using TermColumn = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_terms, 1>;
+
 /// 1, x_i, and with order 2 x_i x_j: as many as there are coefficients in a polynomial.
 int num_terms(int dim, int order);
 
 /// Coordinates of the batch's points in cell `c`, one a row.
-Eigen::MatrixXd point_places(const Mesh& mesh, const PointBatch& batch, std::int32_t c);
+PointRows point_places(const Mesh& mesh, const PointBatch& batch, std::int32_t c);
 /// SolidForm::for_each_batch with the strains that errors are weighed by: those of a linear elastic solid. Otherwise no
 /// strain belongs to a stress alone, and stress / E stands in for it, E the virgin Young's modulus, so that errors are
 /// those of the stress in L2.
 void each_weighed_batch(SolidForm& solid, const State& state, const std::function<void(const PointBatch&)>& visit);
 
 /// Strain and stress at the points of cell `c`, side by side, one point a row.
-Eigen::MatrixXd point_fields(const PointBatch& batch, std::int32_t c);
+PointRows point_fields(const PointBatch& batch, std::int32_t c);
 
 /// Strain and stress of all cells, recovered. A node has one polynomial for each body that it belongs to.
 class PatchRecovery {
@@ -29,8 +36,7 @@ class PatchRecovery {
 
   /// Recovered strain and stress, one place a row as in point_fields, at `places` of cell `c`, where `corners` are the
   /// values of the cell's functions of order 1 (places x corners).
-  Eigen::MatrixXd at(const CellBlock& block, std::int32_t c, const Eigen::MatrixXd& places,
-                     const Eigen::MatrixXd& corners) const;
+  PointRows at(const CellBlock& block, std::int32_t c, const PointRows& places, const Eigen::MatrixXd& corners) const;
 
  private:
   /// How far the polynomial of a patch can be trusted: a mean value only, fitted from one side, fitted all around.
@@ -42,7 +48,8 @@ class PatchRecovery {
   void sum_over_ranks();
   void fit();
   Standing fit_patch(std::span<const double> sums, bool on_boundary, std::span<double> coefficients) const;
-  Eigen::VectorXd terms(Eigen::VectorXd distance) const;
+  Eigen::Vector3d distance(const PointRows& places, Eigen::Index row, std::int32_t node) const;
+  TermColumn terms(const Eigen::Vector3d& distance) const;
   std::int32_t patch(std::int32_t body, std::int32_t node) const { return patches_[body][node]; }
 
   const Mesh& mesh_;

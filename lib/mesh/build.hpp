@@ -17,7 +17,8 @@ namespace amontons {
 /// A .geo meshed anew: triangles or tetrahedra everywhere, whatever transfinite, extruded or recombined parts the
 /// script asks for, so that cells can have any size.
 struct FreeMeshing {
-  std::shared_ptr<const SizeField> sizes; // absent: the sizes that the script asks for
+  std::shared_ptr<const SizeField>
+      sizes; // absent: those of the script's background field, else of the mesh that it makes
 };
 
 struct MeshSource {

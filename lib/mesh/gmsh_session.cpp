@@ -146,6 +146,7 @@ void generate_mesh(GmshSession& session, const MeshSource& source) {
 struct PlainScript {
   std::string text;
   bool was_structured = false;
+  bool has_size_field = false; // without one, the sizes of structured parts are lost with their structure
 };
 
 PlainScript plain_script(GmshSession& session, const MeshSource& source) {
@@ -156,6 +157,7 @@ PlainScript plain_script(GmshSession& session, const MeshSource& source) {
   for (std::string line; std::getline(stream, line);) {
     const bool structured = line.starts_with("Transfinite") || line.starts_with("Recombine");
     script.was_structured = script.was_structured || structured;
+    script.has_size_field = script.has_size_field || line.starts_with("Background Field");
     if (!structured) script.text += line + "\n";
   }
   return script;
@@ -199,7 +201,7 @@ void free_from_script(GmshSession& session, const MeshSource& source) {
   const auto script = plain_script(session, source);
   auto sizes = source.free->sizes;
   if (script.was_structured) {
-    if (!sizes) {
+    if (!sizes && !script.has_size_field) {
       generate_mesh(session, source);
       sizes = std::make_shared<const SizeField>(sizes_of_cells(gmsh::model::getDimension()), usual_growth);
     }

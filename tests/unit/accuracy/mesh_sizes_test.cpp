@@ -64,7 +64,8 @@ TEST_CASE("mesh sizes: limits of the ratio and of the number of cells") {
 
 TEST_CASE("mesh sizes: cells of all ranks with places, edges and rates") {
   // A unit square in 2 x 4 x 4 right triangles; a unit cube in 6 tetrahedra a cell.
-  for (const auto& [type, size] : {std::pair{ElementType::Triangle3, 32.0}, std::pair{ElementType::Tetrahedron4, 48.0}}) {
+  for (const auto& [type, size] :
+       {std::pair{ElementType::Triangle3, 32.0}, std::pair{ElementType::Tetrahedron4, 48.0}}) {
     const int divisions = type == ElementType::Triangle3 ? 4 : 2;
     const Mesh mesh =
         box_mesh(PETSC_COMM_WORLD, type, {divisions, divisions, divisions}, [](auto p) -> std::array<double, 3> {

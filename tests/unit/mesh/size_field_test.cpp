@@ -51,9 +51,9 @@ TEST_CASE("size field: the least of all samples with their slopes, also far outs
       const std::array<double, 3> x = {uniform(generator), uniform(generator), dim == 3 ? uniform(generator) : 0.0};
       double least = 1e300;
       for (const auto& s : samples)
-        least = std::min(least, s.size + growth * std::max(0.0, std::hypot(x[0] - s.place[0], x[1] - s.place[1],
-                                                                           x[2] - s.place[2]) -
-                                                                    s.radius));
+        least = std::min(
+            least, s.size + growth * std::max(0.0, std::hypot(x[0] - s.place[0], x[1] - s.place[1], x[2] - s.place[2]) -
+                                                       s.radius));
       CHECK(field(x) == doctest::Approx(least).epsilon(1e-14));
     }
   }
@@ -87,8 +87,8 @@ TEST_CASE("free meshing: cells have the size asked for, in two and three dimensi
   CHECK(only(plane, ElementType::Triangle3));
   CHECK(std::abs(double(plane.num_cells()) / expected - 1.0) < 0.2);
   // Fine at one place: there cells are small, far away they are not.
-  source.free->sizes = std::make_shared<const SizeField>(
-      std::vector<SizeSample>{{.place = {}, .radius = 0.2, .size = 0.1}}, 0.4);
+  source.free->sizes =
+      std::make_shared<const SizeField>(std::vector<SizeSample>{{.place = {}, .radius = 0.2, .size = 0.1}}, 0.4);
   const auto graded = read_mesh(source);
   double shortest = 1e300, longest = 0.0;
   for (std::size_t c = 0; c < graded.cell_types.size(); ++c) {
