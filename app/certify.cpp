@@ -12,6 +12,8 @@ namespace {
 
 /// Strain below which forces and energies are rounding.
 constexpr double rounding_strain = 1e-10;
+/// Part of the largest force in any accepted state below which forces are what unloading has left.
+constexpr double unloaded_ratio = 1e-6;
 
 /// Size of the mesh's box. Collective.
 double scene_size(const Mesh& mesh) {
@@ -44,9 +46,10 @@ Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<Contac
     increment[i] = state.displacement[i] - increment[i];
   const double size = scene_size(scene.mesh);
   const double area = scene.mesh.dim == 2 && scene.deck.space != Space::Axisymmetric ? size : size * size;
-  // What may be rounding of large displacements is no imbalance.
+  // What may be rounding of large displacements, or what the solver leaves of earlier forces, is no imbalance.
   const double force_floor =
-      std::max(rounding_strain * softest(scene) * area, scene.problem->rounding() / deck.balance);
+      std::max({rounding_strain * softest(scene) * area, scene.problem->rounding() / deck.balance,
+                unloaded_ratio * scene.problem->largest_force()});
   return certify({.mesh = scene.mesh,
                   .space = scene.deck.space,
                   .displacement = state.displacement,
