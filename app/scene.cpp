@@ -214,7 +214,7 @@ void check_friction_factors(const Deck& deck, const Mesh& mesh) {
 std::vector<double> Scene::stiffness() const {
   std::vector<double> stiffness;
   for (std::size_t b = 0; b < mesh.bodies.size(); ++b)
-    stiffness.push_back(bulk->law(static_cast<std::int32_t>(b)).stiffness());
+    stiffness.push_back(bulk->stiffness(static_cast<std::int32_t>(b)));
   return stiffness;
 }
 
