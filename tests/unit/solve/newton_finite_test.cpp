@@ -87,7 +87,7 @@ TEST_CASE("the load of a prediction is the change of the residual with the motio
 }
 
 TEST_CASE("supports may move further than a cell in one increment") {
-  Blocks blocks("-0.4*t"); // cells are 1/6 high
+  Blocks blocks("-0.25*t"); // cells are 1/6 high
   const auto u = blocks.layout.new_vector();
   const auto outcome = solve_increment(blocks, u);
   CAPTURE(outcome.reason);
