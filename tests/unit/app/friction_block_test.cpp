@@ -37,9 +37,8 @@ struct Push {
     if (unknown) fields.assign(1 + dim, multiplier_nodes(mesh, "interface", "upper_bottom"));
     const DofLayout layout(mesh, {}, fields);
     std::vector<std::unique_ptr<Form>> forms;
-    forms.push_back(std::make_unique<BulkForm>(
-        layout, space,
-        std::vector<SmallLaw>{Elastic{100.0, 0.2}, Elastic{100.0, 0.2}}));
+    forms.push_back(
+        std::make_unique<BulkForm>(layout, space, std::vector<SmallLaw>{Elastic{100.0, 0.2}, Elastic{100.0, 0.2}}));
     ContactPair pair{.name = "interface",
                      .slave = "upper_bottom",
                      .master = std::string("lower_top"),
