@@ -45,7 +45,7 @@ Middle middle_of(const Mesh& mesh, Space space, std::span<const double> field, s
 
 } // namespace
 
-YieldAudit audit_yield(BulkForm& solid, const Mesh& mesh, const State& state, std::span<const double> stresses) {
+YieldAudit audit_yield(SolidForm& solid, const Mesh& mesh, const State& state, std::span<const double> stresses) {
   struct {
     double ratio = 0.0;
     int body = -1;
@@ -62,7 +62,7 @@ YieldAudit audit_yield(BulkForm& solid, const Mesh& mesh, const State& state, st
   return {.ratio = worst.ratio, .body = worst.body};
 }
 
-std::vector<double> body_volumes(BulkForm& solid, const Mesh& mesh, const State& state) {
+std::vector<double> body_volumes(SolidForm& solid, const Mesh& mesh, const State& state) {
   std::vector<double> volumes(mesh.bodies.size(), 0.0);
   solid.for_each_batch(state, [&](const PointBatch& batch) {
     for (const double weight : batch.weights)

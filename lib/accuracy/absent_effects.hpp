@@ -3,7 +3,7 @@
 #pragma once
 
 #include "contact/contact_samples.hpp"
-#include "form/bulk.hpp"
+#include "form/solid.hpp"
 
 #include <span>
 #include <vector>
@@ -17,10 +17,10 @@ struct YieldAudit {
 };
 
 /// Collective.
-YieldAudit audit_yield(BulkForm& solid, const Mesh& mesh, const State& state, std::span<const double> stresses);
+YieldAudit audit_yield(SolidForm& solid, const Mesh& mesh, const State& state, std::span<const double> stresses);
 
 /// Volume of each body (area x thickness 1 in the plane, the full turn in axisymmetric space). Collective.
-std::vector<double> body_volumes(BulkForm& solid, const Mesh& mesh, const State& state);
+std::vector<double> body_volumes(SolidForm& solid, const Mesh& mesh, const State& state);
 
 /// ∫ p |u_t| over the slave surface, u_t the tangential part of the displacement of the slave over the master since the
 /// start, searched anew: the work of a shear traction p on that motion, so what friction of coefficient 1 would at most
