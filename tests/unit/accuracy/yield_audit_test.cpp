@@ -1,6 +1,7 @@
 // Von Mises over yield of a uniform state, and the volumes of bodies.
 #include "../form/dense_system.hpp"
 #include "accuracy/absent_effects.hpp"
+#include "form/bulk.hpp"
 #include "material/elastic.hpp"
 
 #include <cmath>
@@ -18,7 +19,7 @@ TEST_CASE("yield audit: shear γ has the von Mises stress √3 G γ, on every ra
       return {2.0 * p[0], p[1], p[2]};
     });
     const DofLayout layout(mesh, {}, {});
-    BulkForm solid(layout, space, {make_law(material, space)});
+    BulkForm solid(layout, space, {material});
     const Eigen::VectorXd u = nodal_values(mesh, [](auto x) -> std::array<double, 3> {
       return {0.01 * x[1], 0.0, 0.0};
     });

@@ -70,8 +70,8 @@ struct Found {
 /// The upper block pressed onto the springs in five increments.
 Found press(const DofLayout& layout, double stiffness, double swirl, const char* preconditioner) {
   std::vector<std::unique_ptr<Form>> forms;
-  const auto law = make_law(Elastic{100.0, 0.3}, Space::Solid);
-  forms.push_back(std::make_unique<BulkForm>(layout, Space::Solid, std::vector<BulkLawPtr>{law, law}));
+  const Elastic law{100.0, 0.3};
+  forms.push_back(std::make_unique<BulkForm>(layout, Space::Solid, std::vector<SmallLaw>{law, law}));
   forms.push_back(std::make_unique<Springs>(layout, "upper_bottom", stiffness, swirl));
   std::vector<PrescribedDisplacement> prescribed;
   for (int c = 0; c < 3; ++c)
