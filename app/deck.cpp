@@ -409,8 +409,11 @@ bool is_condensed(const EnforceDeck& enforce) {
 const std::string& enforce_advice() {
   static const std::string advice =
       "Take semismooth unless the problem is too large to factorize: it converges quadratically and knows friction, "
-      "but is a saddle point and needs a direct solver. A large problem takes vi without friction (symmetric positive "
-      "definite, so for multigrid; converges from any guess) and uzawa with friction; penalty is for quick looks.";
+      "but "
+      "with its default basis is a saddle point and needs a direct solver. A large problem takes semismooth with "
+      "basis: "
+      "dual (no more unknowns than displacements; symmetric positive definite without friction, so for multigrid), vi "
+      "(the same without friction, with a search for a fall of energy) or uzawa; penalty is for quick looks.";
   return advice;
 }
 

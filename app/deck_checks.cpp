@@ -247,7 +247,8 @@ const std::string shape_tags[] = {"", "plane", "sphere", "cylinder"}; // in the 
 bool is_bound(const EnforceDeck& enforce) { return std::holds_alternative<ViDeck>(enforce); }
 
 /// `is_kind` replaces unknowns of the whole problem: all pairs are of that kind or none.
-void check_all_or_none(const Check& check, bool (*is_kind)(const EnforceDeck&), const std::string& kind) {
+void check_all_or_none(const Check& check, bool (*is_kind)(const EnforceDeck&), const std::string& kind,
+                       const std::string& key) {
   const auto& contacts = check.deck.contact;
   const auto of_kind = [is_kind](const ContactDeck& contact) { return is_kind(contact.enforce); };
   const auto one = std::find_if(contacts.begin(), contacts.end(), of_kind);
@@ -255,16 +256,16 @@ void check_all_or_none(const Check& check, bool (*is_kind)(const EnforceDeck&), 
   if (one == contacts.end() || other == contacts.end()) return;
   const auto i = static_cast<std::size_t>(other - contacts.begin());
   check.fail({"contact", i}, list_path("contact", i) + ": the pair '" + one->name.value + "' is enforced by " + kind +
-                                 ", which serves all pairs of a deck or none. Give this pair `enforce: {" + kind +
+                                 ", which serves all pairs of a deck or none. Give this pair `enforce: {" + key +
                                  "}` too, or that one `enforce: {semismooth: {}}`.");
 }
 
 /// A bound knows no friction.
 void check_bounds(const Check& check) {
   const auto& contacts = check.deck.contact;
-  check_all_or_none(check, is_bound, "vi: {}");
+  check_all_or_none(check, is_bound, "vi", "vi: {}");
   if (std::none_of(contacts.begin(), contacts.end(), [](const auto& contact) { return is_bound(contact.enforce); }))
-    check_all_or_none(check, is_condensed, "semismooth: {basis: dual}");
+    check_all_or_none(check, is_condensed, "semismooth with the dual basis", "semismooth: {basis: dual}");
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (is_bound(contacts[i].enforce) && contacts[i].friction)
       check.fail({"contact", i, "friction"}, list_path("contact", i) + ".friction: vi is frictionless. Use " +

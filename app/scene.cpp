@@ -209,6 +209,24 @@ void check_friction_factors(const Deck& deck, const Mesh& mesh) {
   });
 }
 
+/// Small kinematics searches once: a pair of which no point finds its master has no effect, whatever moves. Collective.
+void check_masters(const Deck& deck, MPI_Comm comm, const std::vector<PairReport*>& contacts) {
+  if (deck.kinematics != Kinematics::Small) return;
+  std::vector<int> found(contacts.size(), 0);
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    for (const auto& point : contacts[i]->points().points())
+      if (point.master != ContactPoint::none) found[i] = 1;
+  MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_INT, MPI_MAX, comm);
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    if (!found[i])
+      throw UserError(deck.contact[i].name.place.text() + ": no point of the slave surface '" +
+                      contacts[i]->pair().slave + "' of the pair '" + contacts[i]->pair().name +
+                      "' faces its master within the search_distance of " +
+                      std::to_string(contacts[i]->pair().search_distance) +
+                      ": they can never touch. Check that the two surfaces face each other, or set a larger "
+                      "search_distance.");
+}
+
 } // namespace
 
 std::vector<double> Scene::stiffness() const {
@@ -293,6 +311,7 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path, 
     if (std::holds_alternative<Uzawa>(form->pair().enforcement)) uzawa.push_back(form.get());
     forms.push_back(std::move(form));
   }
+  check_masters(deck, mesh.comm, scene->contacts);
   if (!uzawa.empty()) scene->multipliers = std::make_unique<UzawaMultipliers>(mesh, uzawa);
   scene->problem = std::make_unique<Problem>(layout, std::move(forms), std::move(conditions.prescribed));
   if (!bounded.empty()) scene->bounds = std::make_unique<MortarTransform>(*scene->problem, std::move(bounded));

@@ -68,8 +68,7 @@ MortarTransform::MortarTransform(const Problem& problem, std::vector<MortarForm*
       facet_totals_[pair->nodes().nodes[i]] += counts[0][i];
     facet_counts_.push_back(std::move(counts[0]));
   }
-  leave_out_held();
-  check_pairs();
+  leave_out_nodes();
   build();
 }
 
@@ -85,21 +84,48 @@ void MortarTransform::find_held() {
       hold_[std::size_t(node) * dim_ + tied.component] = Hold::Tied;
 }
 
-/// Collective.
-void MortarTransform::leave_out_held() {
+/// A node has one relative motion: that of the first pair that covers it. In other pairs, and where it is held, it is
+/// left out. Collective.
+void MortarTransform::leave_out_nodes() {
   std::vector<std::vector<std::int32_t>> bare;
-  for (auto* pair : pairs_)
-    bare.push_back(pair->leave_out(find_held_nodes(*pair)));
+  std::vector<const MortarForm*> owners(layout_.mesh().num_local(), nullptr);
+  for (auto* pair : pairs_) {
+    auto left_out = find_held_nodes(*pair);
+    for (std::size_t i = 0; i < left_out.size(); ++i) {
+      auto& owner = owners[pair->nodes().nodes[i]];
+      if (pair->constraints()[i].weight == 0.0 || left_out[i]) continue;
+      if (owner)
+        left_out[i] = 1;
+      else
+        owner = pair;
+    }
+    bare.push_back(pair->leave_out(left_out));
+  }
   together(layout_.mesh().comm, [&] {
     for (std::size_t p = 0; p < pairs_.size(); ++p)
       for (const auto facet : bare[p])
-        throw UserError("the contact pair '" + pairs_[p]->pair().name + "' with " + enforce_text(*pairs_[p]) +
-                        ": all nodes of its slave facet at " + node_text(pairs_[p]->slave().facet(facet)[0]) +
-                        " have prescribed displacements or resultants along the contact normal" +
-                        (pairs_[p]->friction() ? " or across it, where friction acts" : "") +
-                        ", so that contact forces cannot be told from those of the supports. Exchange slave and "
-                        "master, or use `enforce: {semismooth: {}}`.");
+        refuse_facet(*pairs_[p], facet, owners);
   });
+}
+
+/// Throws: no node of the facet can have a multiplier of this pair.
+void MortarTransform::refuse_facet(const MortarForm& pair, std::int32_t facet,
+                                   const std::vector<const MortarForm*>& owners) const {
+  const auto nodes = pair.slave().facet(facet);
+  const auto shared = std::find_if(nodes.begin(), nodes.end(),
+                                   [&](std::int32_t node) { return owners[node] && owners[node] != &pair; });
+  if (shared != nodes.end())
+    throw UserError("the contact pairs '" + owners[*shared]->pair().name + "' and '" + pair.pair().name + "' with " +
+                    enforce_text(pair) + " share the slave node at " + node_text(*shared) +
+                    " and leave none of its own to the slave facet there; a node can have one master only. Leave a "
+                    "facet between the slave surfaces, exchange slave and master of one pair, or use `enforce: "
+                    "{semismooth: {}}`.");
+  throw UserError("the contact pair '" + pair.pair().name + "' with " + enforce_text(pair) +
+                  ": all nodes of its slave facet at " + node_text(nodes[0]) +
+                  " have prescribed displacements or resultants along the contact normal" +
+                  (pair.friction() ? " or across it, where friction acts" : "") +
+                  ", so that contact forces cannot be told from those of the supports. Exchange slave and master, or "
+                  "use `enforce: {semismooth: {}}`.");
 }
 
 /// Nodes that a support holds along the normal; with friction also those that it holds across, unless it is a plane of
@@ -156,27 +182,6 @@ std::string MortarTransform::node_text(std::int32_t node) const {
   for (const double x : layout_.mesh().position(node))
     text.append(text.size() > 1 ? ", " : "").append(std::to_string(x));
   return text.append(")");
-}
-
-void MortarTransform::check_pairs() const {
-  const auto& mesh = layout_.mesh();
-  together(mesh.comm, [&] {
-    std::vector<const MortarForm*> owner(mesh.num_local(), nullptr);
-    for (std::size_t p = 0; p < pairs_.size(); ++p) {
-      const auto& pair = *pairs_[p];
-      const auto& name = pair.pair().name;
-      for (std::size_t i = 0; i < pair.nodes().nodes.size(); ++i) {
-        const auto node = pair.nodes().nodes[i];
-        if (pair.constraints()[i].weight == 0.0) continue;
-        if (!frame(pair, i).bounded) continue;
-        if (const auto* other = std::exchange(owner[node], &pair))
-          throw UserError("the contact pairs '" + other->pair().name + "' and '" + name + "' with " +
-                          enforce_text(pair) + " share the slave node at " + node_text(node) +
-                          ", which can have one master only. Leave a facet between the slave surfaces, exchange " +
-                          "slave and master of one pair, or use `enforce: {semismooth: {}}`.");
-      }
-    }
-  });
 }
 
 std::array<double, 3> NodeFrame::axis(int component) const {

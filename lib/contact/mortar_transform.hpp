@@ -28,9 +28,9 @@ struct NodeFrame {
 
 class MortarTransform : public BoundedUnknowns {
  public:
-  /// The forms belong to the problem, which must outlive this object. Leaves out slave nodes whose
-  /// support hides the contact force (MortarForm::leave_out). Throws UserError where two pairs would bind the same
-  /// slave node, where a slave facet has no node left, and where pairs form a ring. Collective.
+  /// The forms belong to the problem, which must outlive this object. Leaves out slave nodes whose support hides the
+  /// contact force, and those that an earlier pair has (MortarForm::leave_out). Throws UserError where a slave facet
+  /// has no node left, and where pairs form a ring. Collective.
   MortarTransform(const Problem& problem, std::vector<MortarForm*> pairs);
 
   bool update(double time) override;
@@ -51,10 +51,10 @@ class MortarTransform : public BoundedUnknowns {
   NodeFrame frame(const MortarForm& pair, std::size_t place) const;
   Hold hold(std::int32_t node, int component) const { return hold_[std::size_t(node) * dim_ + component]; }
   void find_held();
-  void leave_out_held();
+  void leave_out_nodes();
+  void refuse_facet(const MortarForm& pair, std::int32_t facet, const std::vector<const MortarForm*>& owners) const;
   std::vector<std::uint8_t> find_held_nodes(const MortarForm& pair) const;
   std::vector<std::array<double, 2>> symmetry_planes(const MortarForm& pair) const;
-  void check_pairs() const;
   void build();
   MatHandle reflections() const;
   MatHandle couplings() const;
