@@ -111,7 +111,7 @@ class Problem {
   VecHandle raw_;
   std::vector<double> displacement_;
   double time_ = 0.0, accepted_time_ = 0.0;
-  MatHandle constant_; // the constant part, with the whole pattern
+  MatHandle constant_;           // the constant part, with the whole pattern
   VecHandle diagonal_, scratch_; // of the constant tangent, or where there is none of the first one
   double rounding_ = 0.0;
   double force_scale_ = 0.0, largest_accepted_force_ = 0.0;
