@@ -1,6 +1,6 @@
 // A slab 12 x 4 and above it an indenter 1.2 wide and 1.2 high whose lower face is an arc of radius 0.75, 0.2 above the
-// slab. All cells are quadrilaterals, or hexahedra in `layers` layers of a body of thickness 1; h is their size at the
-// faces that touch.
+// slab. All cells are quadrilaterals, or hexahedra in `layers` layers over half the thickness of a slice that is 1 thick,
+// from its middle plane on; h is their size at the faces that touch.
 DefineConstant[ h = {0.2, Name "h"}, layers = {1, Name "layers"} ];   // layers = 0: plane
 slab_rows = Ceil(2.5/h);     // thinner towards the face
 arc_cells = 2*Ceil(0.75/h);
@@ -49,12 +49,13 @@ If (layers == 0)
   Physical Curve("indenter_face") = {11, 12, 13, 15};
   Physical Curve("top") = {14};
 Else
-  s[] = Extrude {0, 0, 1} { Surface{1}; Layers{layers}; Recombine; };   // opposite face, volume, sides in order
-  i[] = Extrude {0, 0, 1} { Surface{2}; Layers{layers}; Recombine; };
+  s[] = Extrude {0, 0, 0.5} { Surface{1}; Layers{layers}; Recombine; };   // opposite face, volume, sides in order
+  i[] = Extrude {0, 0, 0.5} { Surface{2}; Layers{layers}; Recombine; };
   Physical Volume("slab") = {s[1]};
   Physical Volume("indenter") = {i[1]};
   Physical Surface("base") = {s[2]};
   Physical Surface("slab_face") = {s[4]};
   Physical Surface("indenter_face") = {i[2], i[3], i[4], i[6]};
   Physical Surface("top") = {i[5]};
+  Physical Surface("middle") = {1, 2};
 EndIf

@@ -19,38 +19,46 @@ def published(component, case="frictional"):
 
 
 def ironing_forces(results):
-    """Time, force of the indenter's grip down and along."""
-    return results.history["time"], -results.history["reaction_top_y"], results.history["reaction_top_x"]
+    """Time, force of the indenter's grip down and along; of the whole slice, half of which is modelled."""
+    whole = 2.0 if results.deck["space"] == "solid" else 1.0
+    return results.history["time"], -whole * results.history["reaction_top_y"], whole * results.history["reaction_top_x"]
 
 
-def ironing_press(bench, results, tolerance):
+PLANE = {
+    "space": "plane_strain",
+    "mesh.parameters.layers": 0,
+    "boundary": [
+        {"on": "base", "displacement": {"x": 0, "y": 0}},
+        {"on": "top", "displacement": {"x": "10*max(t-1,0)", "y": "-min(t,1)"}},
+    ],
+}
+PRESS = {"name": "press", "to": 1, "increments": {"auto": {"first": 0.1, "largest": 0.1}}}
+
+
+def ironing_press(bench):
+    """The slice is pressed in as published; the plane body, which cannot bulge, is stiffer, on any mesh."""
+    results = bench.run("shallow_ironing", {"mesh.parameters.h": 0.3, "steps": [PRESS]})
     time, down, _ = ironing_forces(results)
-    for at in (0.5, 0.8, 0.95):
-        bench.close(f"force down at t = {at}", np.interp(at, time, down), np.interp(at, *published("Fy")), tolerance)
+    for at in (0.5, 0.7, 0.9):
+        bench.close(f"force down at t = {at}", np.interp(at, time, down), np.interp(at, *published("Fy")), 0.05)
+    coarse, fine = (
+        np.interp(0.9, *ironing_forces(bench.run("shallow_ironing", {**PLANE, **changes, "steps": [PRESS]}))[:2])
+        for changes in ({"mesh.parameters.h": 0.4}, {"mesh.parameters.h": 0.4, "mesh.order": 2})
+    )
+    bench.close("plane: force down with cells of order 1, against order 2", coarse, fine, 0.02)
 
 
-def ironing_coarse(bench):
-    """Cells of 0.3, the first tenth of the way."""
-    drag = {"name": "drag", "to": 1.1, "increments": {"auto": {"first": 0.05, "largest": 0.05}}}
-    results = bench.run("shallow_ironing", {"mesh.parameters.h": 0.3, "steps.1": drag})
-    ironing_press(bench, results, 0.06)
-    time, down, along = ironing_forces(results)
-    late = time > 1.05
-    bench.below("global over local coefficient of friction, 0.3, is above 1", 0.3 / np.min(along[late] / down[late]), 1.0)
-
-
-def ironing_reference(bench):
-    """The plateau of the whole way, against both published codes; oscillation from facet to facet."""
-    results = bench.run("shallow_ironing")
-    ironing_press(bench, results, 0.05)
-    time, down, along = ironing_forces(results)
+def ironing_drag(bench):
+    """Dragged over the whole length, against the published plateau; and the lecture's remark that the global coefficient
+    of friction is more than the local one, 0.3."""
+    time, down, along = ironing_forces(bench.run("shallow_ironing"))
     plateau = (time >= 1.3) & (time <= 1.7)
-    for name, component, force, tolerance in (("down", "Fy", down, 0.03), ("along", "Fx", along, 0.05)):
+    for name, component, force, tolerance, wave in (("down", "Fy", down, 0.06, 0.01), ("along", "Fx", along, 0.11, 0.03)):
         times, forces = published(component)
         exact = np.mean(forces[(times >= 1.3) & (times <= 1.7)])
         bench.close(f"force {name} on the plateau", np.mean(force[plateau]), exact, tolerance)
-        bench.below(f"oscillation of the force {name} / force", np.ptp(force[plateau]) / np.mean(force[plateau]), 0.06)
-    bench.close("global coefficient of friction", np.mean(along[plateau] / down[plateau]), 0.304, 0.03)
+        bench.below(f"oscillation of the force {name} / force", np.ptp(force[plateau]) / np.mean(force[plateau]), wave)
+    bench.below("local over global coefficient of friction", 0.3 / np.mean(along[plateau] / down[plateau]), 1.0)
 
 
 # --- a cantilever bent and let go by a disc ---------------------------------------------------------------------------
@@ -66,11 +74,11 @@ def cantilever(bench):
         bench.below("stored at the end / stored when bent", stored[-1] / stored.max(), 1e-8)
         bench.below("dissipation falls by / dissipated", max(0.0, -np.diff(dissipated).min()) / dissipated[-1], 1e-12)
         errors.append(abs(work[-1] - dissipated[-1]) / dissipated[-1])
-    bench.below("work not accounted for / dissipated, 40 increments a way", errors[1], 0.02)
+    bench.below("work not accounted for / dissipated, 40 increments a way", errors[1], 0.05)
     bench.below("this error with twice the increments", errors[1] / errors[0], 0.7)
 
 
 CASES = {
-    "shallow_ironing": {"coarse": ironing_coarse, "reference": ironing_reference},
+    "shallow_ironing": {"press": ironing_press, "drag": ironing_drag},
     "cantilever_contact": {"energy": cantilever},
 }

@@ -69,6 +69,27 @@ TEST_CASE("find_on_master: flat surface, its rim, and points behind it") {
   CHECK(flat.hit({0.3, 50.0, 0}, {0, -60.0, 0}, {0, -1, 0}).gap == doctest::Approx(-10.0));
 }
 
+TEST_CASE("find_on_master: from a turned and moved start, everything is as seen from there") {
+  // The flat master turned by 90 degrees counter-clockwise and moved by (3, 1): (x, y) -> (3 - y, 1 + x), up is -x now.
+  Chain flat({{2, 0}, {1, 0}, {0, 0}});
+  std::vector<double> start;
+  for (std::size_t node = 0; node < 3; ++node) {
+    const double x = flat.mesh.coordinates[2 * node], y = flat.mesh.coordinates[2 * node + 1];
+    start.insert(start.end(), {3.0 - y - x, 1.0 + x - y});
+    flat.displacement[2 * node + 1] = 0.1; // and from there along itself
+  }
+  const SlavePoint point{{2.8, 1.3, 0}, {-0.05, 0.4, 0}, {1, 0, 0}, 1.0}; // (0.3, 0.2) before
+  const auto points = std::span(&point, 1);
+  const double reach = reach_of(flat.mesh, flat.displacement, flat.facets, points, start);
+  const auto hit = find_on_master(flat.mesh, flat.displacement, flat.facets, points, reach, start).front();
+  REQUIRE(hit.found);
+  CHECK(hit.gap == doctest::Approx(0.25));
+  CHECK(hit.away[0] == doctest::Approx(-0.2));
+  CHECK(std::abs(hit.away[1]) < 1e-12);
+  CHECK(hit.jump[0] == doctest::Approx(-0.05));
+  CHECK(hit.jump[1] == doctest::Approx(0.3));
+}
+
 TEST_CASE("find_on_master: the master's own displacement counts") {
   Chain flat({{2, 0}, {1, 0}, {0, 0}});
   for (std::size_t node = 0; node < 3; ++node)
