@@ -42,6 +42,8 @@ class FacetCloud {
   std::span<const double> positions(std::int32_t f) const { return part(positions_, f); }
   /// Displacement at ξ, three components.
   std::array<double, 3> displacement_at(std::int32_t f, std::span<const double> xi) const;
+  /// Reference place of ξ, three components.
+  std::array<double, 3> origin_at(std::int32_t f, std::span<const double> xi) const;
   double facet_size(std::int32_t f) const { return amontons::facet_size(type(f), positions(f)); }
   const BoxTree& tree() const { return tree_; }
 
@@ -56,7 +58,7 @@ class FacetCloud {
   std::vector<ElementType> types_;
   std::vector<std::int32_t> bodies_;
   std::vector<std::size_t> offsets_ = {0};
-  std::vector<double> positions_, displacements_;
+  std::vector<double> positions_, displacements_, origins_; // of nodes: at the start, from there, in the reference
   std::vector<Box> boxes_;
   BoxTree tree_;
 };

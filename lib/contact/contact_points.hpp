@@ -30,6 +30,7 @@ struct ContactPoint {
   double gap0 = 1e300;           // in finite kinematics the current gap
   std::array<double, 3> place{}; // reference position
   std::array<double, 3> normal{};
+  double thickness = no_thickness; // of the body behind it, where the surface may meet itself
   std::array<double, 9> master_shape{};
 
   static constexpr std::int32_t none = -1;  // nothing within the search distance: open for good
@@ -39,7 +40,8 @@ struct ContactPoint {
 /// A point and its projection in the current configuration.
 struct PointNow {
   SurfacePoint slave;
-  std::array<double, 2> xi{}; // of the projection on the master's facet
+  std::array<double, 3> reference_normal{}; // of the slave
+  std::array<double, 2> xi{};               // of the projection on the master's facet
   Eigen::Vector3d projection = Eigen::Vector3d::Zero();
   ProjectionHold hold = OnFacet{};
 };
@@ -102,6 +104,8 @@ class ContactPoints {
     std::int32_t guess; // master facet that is likely to be the nearest, or none
   };
   void gather_master(const std::string& surface);
+  void measure_thickness();
+  std::optional<OwnBody> own_body(const ContactPoint& point, std::span<const double> reference_normal) const;
   Box slave_box(std::span<const double> displacement) const;
   void gather_where_needed();
   void follow_all();
@@ -132,8 +136,9 @@ class ContactPoints {
   std::vector<Scratch> scratch_; // per point, during construction
   std::unique_ptr<MasterSurface> master_;
   std::array<double, 3> shift_{};
-  std::vector<std::int32_t> found_; // scratch
-  std::size_t num_values_ = 0;      // of values_ that are not the averages' over the master
+  std::vector<std::int32_t> found_;  // scratch
+  std::vector<std::int32_t> welded_; // of bodies, where the surface may meet itself
+  std::size_t num_values_ = 0;       // of values_ that are not the averages' over the master
   // Finite kinematics:
   std::vector<PointNow> now_;
   std::vector<double> displacement_, accepted_displacement_, gathered_displacement_; // num_local x dim

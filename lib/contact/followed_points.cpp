@@ -17,6 +17,9 @@ namespace {
 
 Eigen::Vector3d vector(const std::array<double, 3>& v) { return Eigen::Vector3d(v[0], v[1], v[2]); }
 std::array<double, 3> array(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+std::array<double, 3> normal_of(const SurfacePoint& at) {
+  return array(at.tangents.col(0).cross(at.tangents.col(1)).normalized());
+}
 
 } // namespace
 
@@ -91,6 +94,7 @@ void ContactPoints::place_now(ContactPoint& point, PointNow& now) const {
   const auto place = xi(point);
   const auto before = surface_point(type, std::span(reference).first(nodes.size() * d), place);
   now.slave = surface_point(type, std::span(current).first(nodes.size() * d), place);
+  now.reference_normal = normal_of(before);
   const auto area = [&](const SurfacePoint& at) {
     return at.tangents.col(0).cross(at.tangents.col(1)).norm() * circumference(pair_.space, at.place[0]);
   };
@@ -113,9 +117,13 @@ void ContactPoints::follow_master(ContactPoint& point, PointNow& now) {
     point.normal = contact.normal;
     return;
   }
-  const auto normal = array(now.slave.tangents.col(0).cross(now.slave.tangents.col(1)).normalized());
-  const auto found = find_master(
-      {.place = place, .normal = std::span(normal).first(d), .size = point.size, .guess = std::max(-1, point.master)});
+  const auto normal = normal_of(now.slave);
+  const auto own = own_body(point, std::span(now.reference_normal).first(d));
+  const auto found = find_master({.place = place,
+                                  .normal = std::span(normal).first(d),
+                                  .size = point.size,
+                                  .guess = std::max(-1, point.master),
+                                  .own = own ? &*own : nullptr});
   attach(point, found);
   set_epsilon(point);
   if (found.facet < 0) return;
