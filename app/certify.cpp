@@ -44,7 +44,9 @@ Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<Contac
     increment[i] = state.displacement[i] - increment[i];
   const double size = scene_size(scene.mesh);
   const double area = scene.mesh.dim == 2 && scene.deck.space != Space::Axisymmetric ? size : size * size;
-  const double force_floor = rounding_strain * softest(scene) * area;
+  // What may be rounding of large displacements is no imbalance.
+  const double force_floor =
+      std::max(rounding_strain * softest(scene) * area, scene.problem->rounding() / deck.balance);
   return certify({.mesh = scene.mesh,
                   .space = scene.deck.space,
                   .displacement = state.displacement,

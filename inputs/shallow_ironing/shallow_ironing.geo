@@ -1,6 +1,7 @@
 // A slab 12 x 4 and above it an indenter 1.2 wide and 1.2 high whose lower face is an arc of radius 0.75, 0.2 above the
-// slab. All cells are quadrilaterals; h is their size at the faces that touch.
-DefineConstant[ h = {0.2, Name "h"} ];
+// slab. All cells are quadrilaterals, or hexahedra in `layers` layers of a body of thickness 1; h is their size at the
+// faces that touch.
+DefineConstant[ h = {0.2, Name "h"}, layers = {1, Name "layers"} ];   // layers = 0: plane
 slab_rows = Ceil(2.5/h);     // thinner towards the face
 arc_cells = 2*Ceil(0.75/h);
 side_rows = Ceil(1.0/h);
@@ -40,9 +41,20 @@ Transfinite Curve {13, 15} = side_rows + 1;
 Transfinite Surface {2} = {11, 13, 14, 15};
 Recombine Surface {2};
 
-Physical Surface("slab") = {1};
-Physical Surface("indenter") = {2};
-Physical Curve("base") = {1};
-Physical Curve("slab_face") = {3};
-Physical Curve("indenter_face") = {11, 12, 13, 15};
-Physical Curve("top") = {14};
+If (layers == 0)
+  Physical Surface("slab") = {1};
+  Physical Surface("indenter") = {2};
+  Physical Curve("base") = {1};
+  Physical Curve("slab_face") = {3};
+  Physical Curve("indenter_face") = {11, 12, 13, 15};
+  Physical Curve("top") = {14};
+Else
+  s[] = Extrude {0, 0, 1} { Surface{1}; Layers{layers}; Recombine; };   // opposite face, volume, sides in order
+  i[] = Extrude {0, 0, 1} { Surface{2}; Layers{layers}; Recombine; };
+  Physical Volume("slab") = {s[1]};
+  Physical Volume("indenter") = {i[1]};
+  Physical Surface("base") = {s[2]};
+  Physical Surface("slab_face") = {s[4]};
+  Physical Surface("indenter_face") = {i[2], i[3], i[4], i[6]};
+  Physical Surface("top") = {i[5]};
+EndIf

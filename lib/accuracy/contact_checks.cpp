@@ -85,13 +85,14 @@ void add_forces(const ContactSamples& samples, const FacetSet& slave, std::span<
       on_slave[c] = samples.weight[i] * traction[c];
       on_master[c] = -on_slave[c];
     }
+    const auto& place = samples.acts_at.empty() ? points[i].place : samples.acts_at[i];
     forces.absolute += std::hypot(traction[0], traction[1], traction[2]) * samples.weight[i];
-    add_wrench(forces.on_body[slave.bodies[samples.facet[i]]], points[i].place, pivot, on_slave);
-    // The force on the master acts on the same line: its moment may be taken at the slave's point.
+    add_wrench(forces.on_body[slave.bodies[samples.facet[i]]], place, pivot, on_slave);
+    // The force on the master acts on the same line: its moment may be taken at the same place.
     if (is_rigid)
-      add_wrench(forces.by_rigid, points[i].place, pivot, on_slave);
+      add_wrench(forces.by_rigid, place, pivot, on_slave);
     else if (hits[i].found)
-      add_wrench(forces.on_body[hits[i].body], points[i].place, pivot, on_master);
+      add_wrench(forces.on_body[hits[i].body], place, pivot, on_master);
   }
 }
 

@@ -94,7 +94,8 @@ class ContactPoints {
   SurfacePoint master_at(std::int32_t facet, std::span<const double> xi) const {
     return surface_point(master_->type(facet), master_->positions(facet), xi);
   }
-  /// Where forces at a point act: its current place in finite kinematics, else its reference place.
+  /// Where forces at a point act: in small kinematics at its reference place; in finite kinematics at its current
+  /// place, along the slave's normal at the projection (point_tangent.cpp: there the slave takes the couple).
   std::array<double, 3> force_place(std::size_t i) const;
 
  private:

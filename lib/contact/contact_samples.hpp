@@ -21,12 +21,15 @@ struct ContactSamples {
   std::vector<std::array<double, 2>> xi;     // on that facet
   std::vector<std::array<double, 3>> place;  // reference position X of the point
   std::vector<std::array<double, 3>> normal; // n, out of the master; the traction on the slave is pressure * n
-  std::vector<double> weight;                // area (per unit thickness in 2D, of the full turn when axisymmetric)
-  std::vector<double> facet_size;            // h
-  std::vector<double> pressure;              // -sigma_n >= 0
-  std::vector<double> gap;                   // g_n as the solver sees it; 1e300 where nothing is near
-  std::vector<ContactStatus> status;         // Slip where in frictionless contact
-  bool has_friction = false;                 // the same on all ranks, also on those without points
+  /// Where the traction acts, in finite kinematics along the slave's normal (then at the projection); empty: at the
+  /// points themselves. With shear over a gap it matters to moments.
+  std::vector<std::array<double, 3>> acts_at;
+  std::vector<double> weight;        // area (per unit thickness in 2D, of the full turn when axisymmetric)
+  std::vector<double> facet_size;    // h
+  std::vector<double> pressure;      // -sigma_n >= 0
+  std::vector<double> gap;           // g_n as the solver sees it; 1e300 where nothing is near
+  std::vector<ContactStatus> status; // Slip where in frictionless contact
+  bool has_friction = false;         // the same on all ranks, also on those without points
   // Empty without friction:
   std::vector<std::array<double, 3>> shear; // traction on the slave in the tangent plane
   std::vector<double> tau_c;                // the law's limit of |shear|

@@ -133,7 +133,9 @@ void ContactPoints::follow_master(ContactPoint& point, PointNow& now) {
 }
 
 std::array<double, 3> ContactPoints::force_place(std::size_t i) const {
-  return is_following() ? array(now_[i].slave.place) : points_[i].place;
+  if (!is_following()) return points_[i].place;
+  const auto& now = now_[i];
+  return array(std::holds_alternative<AlongSlaveNormal>(now.hold) ? now.projection : now.slave.place);
 }
 
 } // namespace amontons

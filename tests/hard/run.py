@@ -25,6 +25,7 @@ import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scenes"))
 from harness import Results  # noqa: E402
+import finite_scenes  # noqa: E402, F401 (adds to the table)
 from scenes import SCENES  # noqa: E402
 
 SECONDS_HANGING = 120

@@ -9,6 +9,7 @@ import tempfile
 from pathlib import Path
 
 import block_cases
+import finite_contact_cases
 import friction_cases
 import hertz_cases
 import other_cases
@@ -23,6 +24,7 @@ CASES = {
     **friction_cases.CASES,
     **block_cases.CASES,
     **vi_cases.CASES,
+    **finite_contact_cases.CASES,
 }
 for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case

@@ -1,0 +1,94 @@
+"""The hard scenes of large sliding. Without friction they are elastic: what the slider feels depends on where it is and
+not on how it got there, so that coming back to a place must bring back the forces felt there before."""
+import numpy as np
+from meshes import Mesh
+from scenes import E, NU, deck, hold, pair, scene
+
+FRICTIONAL = ("semismooth", "uzawa", "penalty")
+SLAVE_NORMAL = {"slave_normal": {}}
+
+
+def slider(seed, x, y, mu=None, rise=None, base=(2.0, 5), block=(0.6, 3), increments=20, to=2, projection=SLAVE_NORMAL):
+    """A block 0.4 high and `block` wide (cells) on a base 0.5 high and `base` long, its left side at x = 0.4; its top
+    moves by x and y. `rise`: what the base's top has more height."""
+    mesh = Mesh(seed)
+    bend = None if rise is None else lambda p: p + np.array([0, rise(p[0]) * p[1] / 0.5, 0])
+    mesh.box("base", (0, 0), (base[0], 0.5), (base[1], 2), bend=bend)
+    mesh.box("block", (0.4, 0.5), (0.4 + block[0], 0.9), (block[1], 2))
+    boundary = [hold("base_bottom", x=0, y=0), hold("block_top", x=x, y=y)]
+    contact = pair("block_bottom", "base_top", mu=mu, segment=False)
+    contact["projection"] = projection
+    contact["search_distance"] = 0.2
+    whole = deck({"base": (E, NU), "block": (E, NU)}, boundary, [contact], ((to, increments),))
+    whole["kinematics"] = "finite"
+    # Cells as large as the bodies: their corners are pressed into faces, and what one cell spans cannot fit the other.
+    whole["certificate"] = {"penetration": 0.3, "complementarity": 0.2, "slip": 0.3}
+    return mesh, whole
+
+
+def forces(run, time):
+    row = int(np.argmin(np.abs(run.history["time"] - time)))
+    return np.array([run.history[f"reaction_block_top_{c}"][row] for c in "xy"])
+
+
+def felt_again(run, first, second, tolerance=1e-6):
+    one, other = forces(run, first), forces(run, second)
+    yield f"force at t = {first} and {second}", np.linalg.norm(one - other) / np.linalg.norm(one), tolerance
+    yield "the block is pressed", float(one[1] >= 0), 0.5
+
+
+@scene("slave nodes pass an edge of the master back and forth (the lecture's endless loop)", FRICTIONAL, name="edge_back_and_forth", rise=lambda x: -0.1 * abs(x - 0.8))
+@scene("back and forth over a valley of the master", FRICTIONAL, name="valley_back_and_forth", rise=lambda x: 0.1 * abs(x - 0.8))
+def back_and_forth(seed, rise):
+    mesh, whole = slider(seed, "0.07*sin(pi*(t-1))*(t>1)", "-0.02*min(t,1)", rise=rise, to=5, increments=50)
+
+    def check(run):
+        yield from felt_again(run, 1, 3)
+        yield from felt_again(run, 1.5, 3.5)
+        yield from felt_again(run, 2.5, 4.5)
+
+    return mesh, whole, check
+
+
+@scene("the corner of the slider passes over facets of the master, and comes back", FRICTIONAL, name="corner_over_facets")
+@scene("a slider that is one cell", FRICTIONAL, name="one_cell_over_facets", block=(0.25, 1))
+@scene("a slider with the surfaces' roles exchanged: master corners pass over slave facets", FRICTIONAL, name="master_corner_over_facets", exchange=True)
+def over_facets(seed, exchange=False, **shape):
+    mesh, whole = slider(seed, "0.9*(1-abs(t-2))*(t>1)", "-0.01*min(t,1)", to=3, increments=60, **shape)
+    if exchange:
+        pair_ = whole["contact"][0]
+        pair_["slave"], pair_["master"] = pair_["master"], pair_["slave"]
+
+    def check(run):
+        yield from felt_again(run, 1, 3)
+        yield from felt_again(run, 1.5, 2.5)
+
+    return mesh, whole, check
+
+
+@scene("slides off the end of the master", FRICTIONAL, name="off_the_end")
+@scene("slides off the end of the master with friction", FRICTIONAL, name="off_the_end_friction", mu=0.3)
+def off_the_end(seed, mu=None):
+    mesh, whole = slider(seed, "1.8*max(t-1,0)", "-0.01*min(t,1)", mu=mu, increments=80)
+
+    def check(run):
+        yield "force at the end / largest", np.linalg.norm(forces(run, 2)) / np.abs(run.history["reaction_block_top_y"]).max(), 1e-6
+        yield "area in contact at the end", run.history["contact_pair_area"][-1], 1e-12
+
+    return mesh, whole, check
+
+
+@scene("contact lost, the block carried on, and found again", FRICTIONAL, name="lost_and_found")
+@scene("contact lost and found again with friction", FRICTIONAL, name="lost_and_found_friction", mu=0.3)
+def lost_and_found(seed, mu=None):
+    # Pressed at even times, lifted at odd ones, moved along in between and back; t and 4 - t are the same place.
+    mesh, whole = slider(seed, "0.25*(1-cos(pi*t/2))", "0.03-0.04*abs(cos(pi*t/2))^3", mu=mu, to=4, increments=40)
+
+    def check(run):
+        row = run.history["contact_pair_area"]
+        yield "area while lifted", float(np.interp(1.0, run.history["time"], row)), 1e-12
+        if mu is None:
+            yield "force at t = 0.1 and 3.9", np.linalg.norm(forces(run, 3.9) - forces(run, 0.1)) / np.linalg.norm(forces(run, 0.1)), 1e-6
+        yield "the block is pressed", float(forces(run, 2)[1] >= 0), 0.5
+
+    return mesh, whole, check
