@@ -112,7 +112,7 @@ void check_materials(const Check& check) {
   }
 }
 
-/// What finite kinematics cannot be combined with.
+/// Contact that finite kinematics cannot have.
 void check_finite(const Check& check) {
   const auto& [deck, root, reading] = check;
   if (deck.kinematics != Kinematics::Finite || !check.sound("contact")) return;

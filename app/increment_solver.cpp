@@ -40,19 +40,38 @@ IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted
   uzawa_ = make_uzawa(scene, *newton_);
 }
 
+/// Where supports move, moves all unknowns on as they moved last: plastic flow that localizes is far from what the
+/// elastic tangent at the start of an increment says. The supports are put right by Problem::begin_increment and its
+/// predictor. (Not where loads drive: nearly incompressible bodies are further from equilibrium on a straight way on
+/// than where they were.)
+void IncrementSolver::extrapolate(double target) {
+  if (!rate_ || !scene_.problem->wants_prediction()) return;
+  AMT_PETSC(VecCopy(accepted_, unknowns_));
+  AMT_PETSC(VecAXPY(unknowns_, target - scene_.problem->accepted_time(), rate_));
+  scene_.problem->begin_increment(target, unknowns_);
+}
+
 SolveOutcome IncrementSolver::solve(double target) {
   AMT_PETSC(VecCopy(accepted_, unknowns_));
   scene_.problem->begin_increment(target, unknowns_);
+  extrapolate(target);
   if (bounded_) return bounded_->solve(unknowns_);
   return uzawa_ ? uzawa_->solve(unknowns_) : newton_->solve(unknowns_);
 }
 
 void IncrementSolver::commit() {
+  const double duration = scene_.problem->time() - scene_.problem->accepted_time();
   scene_.problem->commit(unknowns_);
+  if (scene_.bulk->wants_predictor()) {
+    rate_ = copy_of(unknowns_);
+    AMT_PETSC(VecAXPY(rate_, -1.0, accepted_));
+    AMT_PETSC(VecScale(rate_, 1.0 / duration));
+  }
   resume();
 }
 
 void IncrementSolver::roll_back() {
+  rate_.reset();
   AMT_PETSC(VecCopy(accepted_, unknowns_));
   scene_.problem->roll_back();
 }

@@ -33,7 +33,8 @@ class IncrementSolver {
   Vec unknowns() const { return unknowns_; }
   Vec accepted() const { return accepted_; }
 
-  /// From the last accepted state to equilibrium at `target`. Collective.
+  /// From the last accepted state to equilibrium at `target`. A solid that is not linear and has supports that move
+  /// starts where the last accepted increment points to, unless an increment has failed since. Collective.
   SolveOutcome solve(double target);
   /// Accepts the unknowns, or goes back to the last accepted ones. Collective.
   void commit();
@@ -50,12 +51,15 @@ class IncrementSolver {
   void revisit(const SolvedState& state);
 
  private:
+  void extrapolate(double target);
+
   Scene& scene_;
   std::string linear_solver_;
   std::unique_ptr<BoundedNewton> bounded_; // with bounds, else newton_
   std::unique_ptr<Newton> newton_;
   std::unique_ptr<UzawaLoop> uzawa_;
   VecHandle unknowns_, accepted_;
+  VecHandle rate_; // change of the unknowns over time in the last accepted increment; absent: not to be extrapolated
 };
 
 } // namespace amontons

@@ -31,10 +31,12 @@ Ledger::Ledger(Scene& scene)
 
 void Ledger::find_external_forces(Vec unknowns) {
   AMT_PETSC(VecCopy(scene_.problem->raw_residual(), external_));
-  if (!scene_.loads) return;
+  if (!scene_.loads && !scene_.follower) return;
   AMT_PETSC(VecSet(work_, 0.0));
   Residual loads(*scene_.layout, work_);
-  scene_.loads->add_residual(scene_.problem->state_at(unknowns), loads);
+  const auto state = scene_.problem->state_at(unknowns);
+  if (scene_.loads) scene_.loads->add_residual(state, loads);
+  if (scene_.follower) scene_.follower->add_residual(state, loads);
   loads.finish();
   AMT_PETSC(VecAXPY(external_, -1.0, work_));
 }
@@ -48,6 +50,10 @@ std::vector<double> Ledger::nodal_external_forces(Vec unknowns) {
   const auto state = scene_.problem->state_at(unknowns);
   std::vector<double> forces(state.displacement.size(), 0.0);
   if (scene_.loads) forces = scene_.loads->nodal_forces(state.time);
+  if (scene_.follower) {
+    const auto pressure = scene_.follower->nodal_forces(state);
+    std::transform(forces.begin(), forces.end(), pressure.begin(), forces.begin(), std::plus<>());
+  }
   {
     VecReader raw(scene_.problem->raw_residual());
     for (PetscInt local = 0; local < mesh.num_owned * d; ++local)

@@ -226,6 +226,7 @@ nlohmann::ordered_json describe_scene(const Scene& scene) {
   effects["outer_loop"] = scene.multipliers != nullptr;
   effects["bounded_unknowns"] = scene.bounds != nullptr;
   effects["loads"] = scene.loads != nullptr;
+  effects["follower_pressure"] = scene.follower != nullptr;
   nlohmann::ordered_json json;
   json["dim"] = mesh.dim;
   json["order"] = mesh.order;

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "deck/rule.hpp"
+#include "form/point_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +114,33 @@ void restore_pair(const Scene& scene, PairReport& contact, const Checkpoint& che
   put_unknown_multipliers(*scene.layout, contact, history, unknowns);
 }
 
+std::string points_name(const std::string& body) { return "points:" + body; }
+
+void save_points(const Scene& scene, Checkpoint& checkpoint) {
+  const auto& states = scene.bulk->point_states();
+  for (std::size_t body = 0; body < scene.mesh.bodies.size(); ++body) {
+    if (state_size(scene.mesh, states, body) == 0) continue;
+    auto rows = point_rows(scene.mesh, scene.deck.space, states, body);
+    checkpoint.cells[points_name(scene.mesh.bodies[body])] = {.body = scene.mesh.bodies[body],
+                                                              .components = rows.components,
+                                                              .rows = std::move(rows.rows),
+                                                              .values = std::move(rows.values)};
+  }
+}
+
+void restore_points(Scene& scene, const Checkpoint& checkpoint) {
+  PointStates states = scene.bulk->point_states(); // for its sizes
+  states.time = checkpoint.time;
+  for (std::size_t body = 0; body < scene.mesh.bodies.size(); ++body) {
+    if (state_size(scene.mesh, states, body) == 0) continue;
+    const auto& stored = checkpoint.cells.at(points_name(scene.mesh.bodies[body]));
+    together(scene.mesh.comm, [&] {
+      put_point_rows(scene.mesh, scene.deck.space, body, {stored.components, stored.rows, stored.values}, states);
+    });
+  }
+  scene.bulk->restore_points(std::move(states));
+}
+
 std::string enforcement_text(const ContactPair& pair) {
   const int degree = std::visit([](const auto& rule) { return rule.degree; }, pair.integration);
   return formatted("enforcement %d, friction %d, integration %d, degree %d", static_cast<int>(pair.enforcement.index()),
@@ -147,6 +175,7 @@ Checkpoint make_checkpoint(const Scene& scene, const Ledger& ledger, Vec accepte
       checkpoint.nodal[multiplier_name(*contact)] = nodal_multipliers(scene, *contact, history);
     if (contact->tangential()) checkpoint.facets[history_name(*contact)] = point_rows(*contact, history);
   }
+  save_points(scene, checkpoint);
   checkpoint.global["largest_force"] = {scene.problem->largest_force()};
   ledger.save(checkpoint);
   return checkpoint;
@@ -156,6 +185,7 @@ void restore_state(Scene& scene, Ledger& ledger, const Checkpoint& checkpoint, V
   scene.layout->put_displacement(checkpoint.nodal.at("displacement").values, unknowns);
   for (auto* contact : scene.contacts)
     restore_pair(scene, *contact, checkpoint, unknowns);
+  restore_points(scene, checkpoint);
   scene.problem->resume(checkpoint.time, checkpoint.global.at("largest_force").at(0));
   const auto state = scene.problem->state_at(unknowns);
   for (auto* contact : scene.contacts)

@@ -4,6 +4,7 @@
 #include "base/timer.hpp"
 #include "form/bulk.hpp"
 #include "form/finite_bulk.hpp"
+#include "form/follower_pressure.hpp"
 #include "form/support.hpp"
 #include "geometry/box_tree.hpp"
 #include "validate.hpp"
@@ -35,9 +36,9 @@ std::unique_ptr<SolidForm> make_solid(const Deck& deck, const DofLayout& layout,
       laws.push_back(finite_law(material_of(deck, body)));
     return std::make_unique<FiniteBulkForm>(layout, deck.space, std::move(laws));
   }
-  std::vector<BulkLawPtr> laws;
+  std::vector<SmallLaw> laws;
   for (const auto& body : bodies)
-    laws.push_back(make_law(std::get<Elastic>(small_law(material_of(deck, body), body)), deck.space));
+    laws.push_back(small_law(material_of(deck, body), body));
   return std::make_unique<BulkForm>(layout, deck.space, std::move(laws), std::move(body_loads));
 }
 
@@ -156,6 +157,7 @@ struct Conditions {
   std::vector<PrescribedDisplacement> prescribed;
   std::vector<TiedGroup> tied;
   std::vector<SurfaceLoad> surface;
+  std::vector<FollowerPressure> follower; // instead of pressures in `surface`, in finite kinematics
   std::vector<BodyLoad> body;
   std::vector<ResultantLoad> resultants;
 };
@@ -173,8 +175,11 @@ Conditions make_conditions(const Deck& deck) {
     }
     const bool traction =
         std::any_of(condition.traction.begin(), condition.traction.end(), [](const auto& c) { return c.has_value(); });
-    if (traction || condition.pressure)
-      conditions.surface.push_back({condition.on.value, condition.traction, condition.pressure});
+    const bool follows = condition.pressure && deck.kinematics == Kinematics::Finite;
+    if (follows) conditions.follower.push_back({condition.on.value, *condition.pressure});
+    if (traction || (condition.pressure && !follows))
+      conditions.surface.push_back(
+          {condition.on.value, condition.traction, follows ? std::optional<Expression>() : condition.pressure});
   }
   for (const auto& [body, force] : deck.body_force)
     conditions.body.push_back({body, force.value});
@@ -250,6 +255,11 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path) 
                                             std::move(conditions.body), std::move(conditions.resultants));
     scene->loads = loads.get();
     forms.push_back(std::move(loads));
+  }
+  if (!conditions.follower.empty()) {
+    auto pressure = std::make_unique<FollowerPressureForm>(layout, deck.space, std::move(conditions.follower));
+    scene->follower = pressure.get();
+    forms.push_back(std::move(pressure));
   }
   if (!scene->floating.empty()) forms.push_back(std::make_unique<SupportForm>(layout, floating, stiffness));
   std::vector<ContactForm*> uzawa;

@@ -5,6 +5,7 @@
 #include "contact/mortar_transform.hpp"
 #include "contact/uzawa_multipliers.hpp"
 #include "deck.hpp"
+#include "form/follower_pressure.hpp"
 #include "form/loads.hpp"
 #include "form/problem.hpp"
 #include "form/solid.hpp"
@@ -23,7 +24,8 @@ struct Scene {
   std::unique_ptr<DofLayout> layout;
   std::unique_ptr<Problem> problem;
   SolidForm* bulk = nullptr;                     // owned by the problem
-  LoadForm* loads = nullptr;                     // absent without loads
+  LoadForm* loads = nullptr;                     // absent without loads that keep their direction
+  FollowerPressureForm* follower = nullptr;      // absent without pressures in finite kinematics
   std::vector<PairReport*> contacts;             // owned by the problem
   std::unique_ptr<UzawaMultipliers> multipliers; // absent without `uzawa` pairs
   std::unique_ptr<MortarTransform> bounds;       // absent without `vi` pairs

@@ -2,39 +2,90 @@
 
 #include "form/cell_access.hpp"
 #include "form/cell_kernel.hpp"
+#include "material/elastic.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <stdexcept>
 
 namespace amontons {
 namespace {
-
-/// The shear modulus G' of what no quadrature point sees of a bubble: E / 3, the right one where it matters.
-double unseen_shear(const BulkLaw& law) { return law.stiffness() / 3; }
 
 /// One block of cells with all that its strains and stresses depend on besides the displacement.
 struct Material {
   const Mesh& mesh;
   const CellBlock& block;
   CellRule rule;
-  const BulkLaw& law;
+  const SmallLaw& law;
+  Space space;
+  std::optional<Lame> linear; // the law's constants if it is linear elastic
+  double unseen_shear;        // G' of what no quadrature point sees of a bubble: E / 3, the right one where it matters
+  PointContext context;
+  const PointStates::Block& accepted;
   std::span<const double> bubble_forces; // dim a cell; empty: none
 };
 
-/// Some consecutive cells of a block, deformed. `strain` and `stress` run as in PointBatch.
+/// Some consecutive cells of a block, deformed. `strain` and `stress` run as in PointBatch; the numbers of `stored`,
+/// `dissipated` and `states` are those of a law that is not linear elastic.
 template <class Kernel>
 struct Batch {
   std::int32_t first;
   std::vector<typename Kernel::Cell> cells;
   std::vector<typename Kernel::Nodal> displacements; // of the nodes and of the bubble
   std::vector<double> strain, stress, moduli;
+  std::vector<double> stored, dissipated, states;
   std::size_t stride() const { return strain.size() / cells.size(); }
+  std::size_t points() const { return strain.size() / Kernel::components; }
+  std::size_t first_point() const { return first * (points() / cells.size()); }
+  SmallPoints at_points(const Material& material) const {
+    return {strain, material.accepted.states_of(first_point(), points())};
+  }
 };
 
-/// Newton's method for the bubbles of a batch: one step for constant moduli.
+template <class Kernel>
+PointOutcome find_stress(const Material& material, Batch<Kernel>& batch) {
+  constexpr int dim = Kernel::dim, size = Kernel::components;
+  if (material.linear) {
+    for (std::size_t i = 0; i < batch.strain.size(); i += size)
+      Eigen::Map<Stress<dim>>{&batch.stress[i]} =
+          elastic_stress<dim>(*material.linear, material.space, Eigen::Map<const Strain<dim>>(&batch.strain[i]));
+    return PointOutcome::Solved;
+  }
+  const auto failure = respond<dim>(material.law, material.context, batch.at_points(material),
+                                    {batch.stress, batch.stored, batch.dissipated, batch.states});
+  return failure ? failure->outcome : PointOutcome::Solved;
+}
+
+/// dσ/dε of a law that is not linear elastic.
+template <class Kernel>
+PointOutcome find_moduli(const Material& material, const Batch<Kernel>& batch, std::vector<double>& moduli) {
+  moduli.resize(batch.strain.size() * Kernel::components);
+  const auto failure = tangents<Kernel::dim>(material.law, material.context, batch.at_points(material), moduli);
+  return failure ? failure->outcome : PointOutcome::Solved;
+}
+
+/// Newton's method for the bubbles of a batch: one step for a linear law.
 constexpr int most_bubble_steps = 25;
-constexpr double bubble_tolerance = 1e-10; // change of β relative to the displacements within the cell
+constexpr double bubble_tolerance = 1e-10; // change of β relative to bubble_scale
+
+/// What a bubble's displacement is small against: the displacements within the cell, or those that its stresses stand
+/// for (in a cell that has come back to its place and has stresses left).
+template <class Kernel>
+double bubble_scale(const Material& material, std::size_t c, const Batch<Kernel>& batch) {
+  constexpr int dim = Kernel::dim;
+  const auto& u = batch.displacements[c];
+  const auto& cell = batch.cells[c];
+  double moved = 0, stress = 0, slope = 0;
+  for (int i = 0; i < dim; ++i)
+    for (int a = 1; a < Kernel::functions; ++a)
+      moved = std::max(moved, std::abs(u[a * dim + i] - (a < Kernel::nodes ? u[i] : 0.0)));
+  for (int q = 0; q < cell.size; ++q)
+    for (int i = 0; i < dim; ++i)
+      slope = std::max(slope, std::abs(cell.points[q].gradient[Kernel::node_unknowns + i]));
+  const std::size_t at = c * batch.stride();
+  for (std::size_t i = at; i < at + batch.stride(); ++i)
+    stress = std::max(stress, std::abs(batch.stress[i]));
+  return std::max(moved, stress / (3 * material.unseen_shear * slope));
+}
 
 /// One Newton step for the bubble of cell c of a batch. True when it was a small one. (Strains are changed in place, so
 /// rounding in those of the nodes does not come back as a change of β.)
@@ -43,11 +94,11 @@ bool improve_bubble(const Material& material, std::size_t c, Batch<Kernel>& batc
   constexpr int dim = Kernel::dim, first = Kernel::node_unknowns;
   const auto& cell = batch.cells[c];
   const std::size_t at = c * batch.stride();
-  const double shear = unseen_shear(material.law);
+  const double shear = material.unseen_shear;
   auto& u = batch.displacements[c];
-  const auto lame = material.law.constant_lame();
-  const auto stiffness = lame ? Kernel::bubble_stiffness(cell, *lame, shear)
-                              : Kernel::bubble_stiffness(cell, &batch.moduli[at * Kernel::components], shear);
+  const auto stiffness = material.linear
+                             ? Kernel::bubble_stiffness(cell, *material.linear, shear)
+                             : Kernel::bubble_stiffness(cell, &batch.moduli[at * Kernel::components], shear);
   const auto unseen = Kernel::unseen_stiffness(cell, shear);
   auto force = Kernel::template forces<Kernel::nodes, Kernel::functions>(cell, &batch.stress[at]);
   for (int i = 0; i < dim; ++i) {
@@ -57,40 +108,34 @@ bool improve_bubble(const Material& material, std::size_t c, Batch<Kernel>& batc
   }
   const auto step = Kernel::solve(stiffness, force);
   Kernel::template add_strains<Kernel::nodes, Kernel::functions>(cell, step, &batch.strain[at]);
-  double change = 0, scale = 0;
+  double change = 0;
   for (int i = 0; i < dim; ++i) {
     u[first + i] += step[first + i];
     change = std::max(change, std::abs(step[first + i]));
-    for (int a = 1; a < Kernel::functions; ++a)
-      scale = std::max(scale, std::abs(u[a * dim + i] - (a < Kernel::nodes ? u[i] : 0.0)));
   }
-  return change <= bubble_tolerance * scale;
+  return change <= bubble_tolerance * bubble_scale(material, c, batch);
 }
 
-/// Brings the bubbles of a batch into equilibrium with the nodes' displacements, and makes the stresses. Where the law
-/// does not let them, the stresses are not numbers, and the solver tries a smaller increment.
+/// Brings the bubbles of a batch into equilibrium with the nodes' displacements, and makes the stresses.
 template <class Kernel>
-void relax_bubbles(const Material& material, Batch<Kernel>& batch) {
-  const bool linear = material.law.constant_lame().has_value();
+PointOutcome relax_bubbles(const Material& material, Batch<Kernel>& batch) {
   bool done = false;
   for (int step = 0; step < most_bubble_steps && !done; ++step) {
-    material.law.stress(batch.strain, batch.stress);
-    if (!linear) {
-      batch.moduli.resize(batch.strain.size() * Kernel::components);
-      material.law.moduli(batch.strain, batch.moduli);
-    }
+    auto outcome = find_stress(material, batch);
+    if (outcome == PointOutcome::Solved && !material.linear) outcome = find_moduli(material, batch, batch.moduli);
+    if (outcome != PointOutcome::Solved) return outcome;
     done = true;
     for (std::size_t c = 0; c < batch.cells.size(); ++c)
       done = improve_bubble(material, c, batch) && done;
-    done = done || linear;
+    done = done || material.linear;
   }
-  material.law.stress(batch.strain, batch.stress);
-  if (!done) std::fill(batch.stress.begin(), batch.stress.end(), std::numeric_limits<double>::quiet_NaN());
+  return done ? find_stress(material, batch) : PointOutcome::NotConverged;
 }
 
-/// Geometry, strains and stresses batch by batch: calls work(batch) for each batch of the block.
+/// Geometry, strains and stresses batch by batch: calls work(batch) for each batch of the block, up to the first one
+/// that has no answer, and returns how that went.
 template <class Kernel, class Work>
-void each_batch(const Material& material, std::span<const double> displacement, Work&& work) {
+PointOutcome each_batch(const Material& material, std::span<const double> displacement, Work&& work) {
   const CellBlock& block = material.block;
   const auto points = static_cast<std::size_t>(material.rule.table->rule->size());
   Batch<Kernel> batch;
@@ -100,6 +145,11 @@ void each_batch(const Material& material, std::span<const double> displacement, 
     batch.displacements.resize(count);
     batch.strain.assign(count * points * Kernel::components, 0.0);
     batch.stress.resize(batch.strain.size());
+    if (!material.linear) {
+      batch.stored.resize(count * points);
+      batch.dissipated.resize(count * points);
+      batch.states.resize(count * points * material.accepted.components);
+    }
     for (std::size_t c = 0; c < count; ++c) {
       const auto nodes = block.cell(batch.first + static_cast<std::int32_t>(c));
       Kernel::geometry(material.rule, gather<Kernel>(material.mesh.coordinates, nodes), batch.cells[c]);
@@ -107,17 +157,21 @@ void each_batch(const Material& material, std::span<const double> displacement, 
       Kernel::template add_strains<0, Kernel::nodes>(batch.cells[c], batch.displacements[c],
                                                      &batch.strain[c * batch.stride()]);
     }
+    PointOutcome outcome;
     if constexpr (Kernel::has_bubble)
-      relax_bubbles(material, batch);
+      outcome = relax_bubbles(material, batch);
     else
-      material.law.stress(batch.strain, batch.stress);
+      outcome = find_stress(material, batch);
+    if (outcome != PointOutcome::Solved) return outcome;
     work(batch);
   }
+  return PointOutcome::Solved;
 }
 
 template <class Kernel>
-void add_block_forces(const Material& material, std::span<const double> displacement, std::span<double> forces) {
-  each_batch<Kernel>(material, displacement, [&](const Batch<Kernel>& batch) {
+PointOutcome add_block_forces(const Material& material, std::span<const double> displacement,
+                              std::span<double> forces) {
+  return each_batch<Kernel>(material, displacement, [&](const Batch<Kernel>& batch) {
     for (std::size_t c = 0; c < batch.cells.size(); ++c) {
       const auto force = Kernel::template forces<0, Kernel::nodes>(batch.cells[c], &batch.stress[c * batch.stride()]);
       scatter<Kernel>(force, material.block.cell(batch.first + static_cast<std::int32_t>(c)), forces);
@@ -131,7 +185,7 @@ void add_cell_stiffness(const DofLayout& layout, const Material& material, std::
                         const typename Kernel::Cell& cell, const typename Kernel::Block& K, Tangent& tangent) {
   const auto equations = cell_equations<Kernel>(layout, material.block.cell(c));
   if constexpr (Kernel::has_bubble)
-    tangent.add(equations, Kernel::condensed(K, cell, unseen_shear(material.law)));
+    tangent.add(equations, Kernel::condensed(K, cell, material.unseen_shear));
   else
     tangent.add(equations, K);
 }
@@ -147,14 +201,15 @@ void add_isotropic_stiffness(const DofLayout& layout, const Material& material, 
   }
 }
 
+/// A law that answers to a strain has moduli there, too, unless they overflow: then nothing is added, and the solver
+/// meets the failure at its next residual.
 template <class Kernel>
 void add_stiffness(const DofLayout& layout, const Material& material, std::span<const double> displacement,
                    Tangent& tangent) {
   typename Kernel::Block K;
   std::vector<double> moduli;
   each_batch<Kernel>(material, displacement, [&](const Batch<Kernel>& batch) {
-    moduli.resize(batch.strain.size() * Kernel::components);
-    material.law.moduli(batch.strain, moduli);
+    if (find_moduli(material, batch, moduli) != PointOutcome::Solved) return;
     for (std::size_t c = 0; c < batch.cells.size(); ++c) {
       Kernel::stiffness(batch.cells[c], &moduli[c * batch.stride() * Kernel::components], K);
       add_cell_stiffness<Kernel>(layout, material, batch.first + static_cast<std::int32_t>(c), batch.cells[c], K,
@@ -163,76 +218,160 @@ void add_stiffness(const DofLayout& layout, const Material& material, std::span<
   });
 }
 
-/// Strain energy at the points plus that of what they do not see of the bubbles.
+/// Σ w density over a batch.
 template <class Kernel>
-double block_energy(const Material& material, std::span<const double> displacement) {
-  double energy = 0;
-  std::vector<double> density;
-  each_batch<Kernel>(material, displacement, [&](const Batch<Kernel>& batch) {
-    density.resize(batch.strain.size() / Kernel::components);
-    material.law.energy(batch.strain, density);
-    std::size_t point = 0;
+double weighted(const Batch<Kernel>& batch, std::span<const double> density) {
+  double sum = 0;
+  std::size_t point = 0;
+  for (const auto& cell : batch.cells)
+    for (int q = 0; q < cell.size; ++q)
+      sum += cell.points[q].weight * density[point++];
+  return sum;
+}
+
+/// Σ w σ : ε over a batch.
+template <class Kernel>
+double work_at_points(const Batch<Kernel>& batch) {
+  std::vector<double> density(batch.points(), 0.0);
+  for (std::size_t i = 0; i < batch.strain.size(); ++i)
+    density[i / Kernel::components] += batch.stress[i] * batch.strain[i];
+  return weighted(batch, density);
+}
+
+/// β · (unseen stiffness) β over a batch: twice the energy of what the points do not see of the bubbles.
+template <class Kernel>
+double unseen_work(const Material& material, const Batch<Kernel>& batch) {
+  double sum = 0;
+  if constexpr (Kernel::has_bubble)
     for (std::size_t c = 0; c < batch.cells.size(); ++c) {
-      for (int q = 0; q < batch.cells[c].size; ++q)
-        energy += batch.cells[c].points[q].weight * density[point++];
-      if constexpr (Kernel::has_bubble) {
-        const auto unseen = Kernel::unseen_stiffness(batch.cells[c], unseen_shear(material.law));
-        const double* const beta = &batch.displacements[c][Kernel::node_unknowns];
-        for (int i = 0; i < Kernel::dim; ++i)
-          for (int j = 0; j < Kernel::dim; ++j)
-            energy += 0.5 * beta[i] * unseen[i][j] * beta[j];
-      }
+      const auto unseen = Kernel::unseen_stiffness(batch.cells[c], material.unseen_shear);
+      const double* const beta = &batch.displacements[c][Kernel::node_unknowns];
+      for (int i = 0; i < Kernel::dim; ++i)
+        for (int j = 0; j < Kernel::dim; ++j)
+          sum += beta[i] * unseen[i][j] * beta[j];
     }
-  });
-  return energy;
+  return sum;
+}
+
+/// The zz strains that the others imply where zz is free.
+void complete_strain(const Elastic& elastic, std::span<double> strain) {
+  for (std::size_t i = 0; i < strain.size(); i += strain_size<2>)
+    strain[i + 2] = plane_stress_zz_strain(elastic, strain[i], strain[i + 1]);
 }
 
 } // namespace
 
-BulkForm::BulkForm(const DofLayout& layout, Space space, std::vector<BulkLawPtr> laws, std::vector<BodyLoad> body_loads)
+BulkForm::BulkForm(const DofLayout& layout, Space space, std::vector<SmallLaw> laws, std::vector<BodyLoad> body_loads)
     : layout_(layout), space_(space), laws_(std::move(laws)), body_loads_(std::move(body_loads)) {
+  for (const auto& law : laws_) {
+    const auto* elastic = std::get_if<Elastic>(&law);
+    if (!elastic && space_ == Space::PlaneStress)
+      throw std::invalid_argument("BulkForm: plane stress is for linear elastic bodies");
+    BodyModuli moduli{.young = young(initial_lame(law)), .linear = {}};
+    if (elastic) moduli.linear = lame_constants(*elastic, space_);
+    moduli_.push_back(moduli);
+  }
   check_cells(layout_.mesh(), space_);
+  states_ = virgin_states(layout_.mesh(), space_, laws_);
 }
 
 template <class Work>
-void BulkForm::each_block(double time, Work&& work) {
+void BulkForm::each_block(const State& state, Work&& work) {
   const Mesh& mesh = layout_.mesh();
-  const bool known = bubble_forces_time_ == time;
+  const bool known = bubble_forces_time_ == state.time;
+  const PointContext context{.dt = std::max(0.0, state.time - states_.time)};
   bubble_forces_.resize(mesh.blocks.size());
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const CellBlock& block = mesh.blocks[b];
+    const auto& [young_modulus, linear] = moduli_[block.body];
     with_kernel(block.type, space_, [&](auto kernel) {
       if constexpr (decltype(kernel)::has_bubble)
-        if (!known && !body_loads_.empty()) bubble_forces_[b] = bubble_forces(mesh, space_, block, body_loads_, time);
-      work(kernel, Material{mesh, block, cell_rule(block.type, space_), *laws_[block.body], bubble_forces_[b]});
+        if (!known && !body_loads_.empty())
+          bubble_forces_[b] = bubble_forces(mesh, space_, block, body_loads_, state.time);
+      work(kernel,
+           Material{mesh, block, cell_rule(block.type, space_), laws_[block.body], space_, linear, young_modulus / 3,
+                    context, states_.blocks[b], bubble_forces_[b]},
+           b);
     });
   }
-  bubble_forces_time_ = time;
+  bubble_forces_time_ = state.time;
 }
 
 void BulkForm::add_residual(const State& state, Residual& residual) {
-  each_block(state.time, [&](auto kernel, const Material& material) {
-    add_block_forces<decltype(kernel)>(material, state.displacement, residual.nodal());
+  each_block(state, [&](auto kernel, const Material& material, std::size_t) {
+    const auto outcome = add_block_forces<decltype(kernel)>(material, state.displacement, residual.nodal());
+    if (outcome != PointOutcome::Solved) residual.fail(failure_text(material.mesh, material.block, outcome));
+  });
+}
+
+void BulkForm::add_constant_tangent(const State& state, Tangent& tangent) {
+  each_block(state, [&](auto kernel, const Material& material, std::size_t) {
+    if (material.linear) add_isotropic_stiffness<decltype(kernel)>(layout_, material, *material.linear, tangent);
+  });
+}
+
+void BulkForm::add_changing_tangent(const State& state, Tangent& tangent) {
+  each_block(state, [&](auto kernel, const Material& material, std::size_t) {
+    if (!material.linear) add_stiffness<decltype(kernel)>(layout_, material, state.displacement, tangent);
   });
 }
 
 void BulkForm::add_tangent(const State& state, Tangent& tangent) {
-  each_block(state.time, [&](auto kernel, const Material& material) {
-    if (const auto lame = material.law.constant_lame())
-      add_isotropic_stiffness<decltype(kernel)>(layout_, material, *lame, tangent);
-    else
-      add_stiffness<decltype(kernel)>(layout_, material, state.displacement, tangent);
-  });
+  add_constant_tangent(state, tangent);
+  add_changing_tangent(state, tangent);
 }
 
 bool BulkForm::tangent_is_constant() const {
-  return std::all_of(laws_.begin(), laws_.end(), [](const auto& law) { return law->constant_lame().has_value(); });
+  return std::all_of(moduli_.begin(), moduli_.end(), [](const auto& moduli) { return moduli.linear.has_value(); });
 }
+
+void BulkForm::commit(const State& state) {
+  PointStates next = states_;
+  next.time = state.time;
+  each_block(state, [&](auto kernel, const Material& material, std::size_t b) {
+    using Kernel = decltype(kernel);
+    if (!material.accepted.has_memory()) return;
+    each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
+      next.blocks[b].accept(batch.first_point(), batch.states, batch.dissipated);
+    });
+  });
+  states_ = std::move(next);
+}
+
+std::any BulkForm::history() const { return states_; }
 
 double BulkForm::stored_energy(const State& state) {
   double total = 0;
-  each_block(state.time, [&](auto kernel, const Material& material) {
-    total += block_energy<decltype(kernel)>(material, state.displacement);
+  each_block(state, [&](auto kernel, const Material& material, std::size_t) {
+    using Kernel = decltype(kernel);
+    each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
+      total += material.linear ? 0.5 * work_at_points(batch) : weighted(batch, batch.stored);
+      total += 0.5 * unseen_work(material, batch);
+    });
+  });
+  return total;
+}
+
+double BulkForm::internal_work(const State& state) {
+  double total = 0;
+  each_block(state, [&](auto kernel, const Material& material, std::size_t) {
+    using Kernel = decltype(kernel);
+    each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
+      total += work_at_points(batch) + unseen_work(material, batch);
+    });
+  });
+  return total;
+}
+
+double BulkForm::dissipated_energy(const State& state) {
+  double total = 0;
+  each_block(state, [&](auto kernel, const Material& material, std::size_t) {
+    using Kernel = decltype(kernel);
+    if (!material.accepted.has_memory()) return;
+    each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
+      total += weighted(batch, material.accepted.dissipated_at(batch.first_point(), batch.points())) +
+               weighted(batch, batch.dissipated);
+    });
   });
   return total;
 }
@@ -240,7 +379,7 @@ double BulkForm::stored_energy(const State& state) {
 LoadedBubbles BulkForm::loaded_bubbles(const State& state) {
   LoadedBubbles result;
   if (body_loads_.empty()) return result;
-  each_block(state.time, [&](auto kernel, const Material& material) {
+  each_block(state, [&](auto kernel, const Material& material, std::size_t) {
     using Kernel = decltype(kernel);
     if constexpr (Kernel::has_bubble) {
       result.forces.insert(result.forces.end(), material.bubble_forces.begin(), material.bubble_forces.end());
@@ -253,25 +392,30 @@ LoadedBubbles BulkForm::loaded_bubbles(const State& state) {
   return result;
 }
 
+std::vector<std::string> BulkForm::scalar_names() const {
+  const bool plastic =
+      std::any_of(laws_.begin(), laws_.end(), [](const auto& law) { return !state_names(law).empty(); });
+  if (!plastic) return {};
+  return {"accumulated_plastic_strain"};
+}
+
 void BulkForm::for_each_batch(const State& state, const std::function<void(const PointBatch&)>& visit) {
-  std::vector<double> weights, strain;
-  each_block(state.time, [&](auto kernel, const Material& material) {
+  const bool has_scalars = !scalar_names().empty();
+  std::vector<double> weights, strain, scalars;
+  each_block(state, [&](auto kernel, const Material& material, std::size_t) {
     using Kernel = decltype(kernel);
     each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
       strain = batch.strain;
-      material.law.complete_strain(strain);
+      if (space_ == Space::PlaneStress) complete_strain(std::get<Elastic>(material.law), strain);
       weights.clear();
       for (const auto& cell : batch.cells)
         for (int q = 0; q < cell.size; ++q)
           weights.push_back(cell.points[q].weight);
-      visit({&material.block,
-             batch.first,
-             static_cast<std::int32_t>(batch.cells.size()),
-             material.rule.table,
-             weights,
-             strain,
-             batch.stress,
-             {}});
+      scalars.assign(has_scalars ? batch.points() : 0, 0.0);
+      for (std::size_t p = 0; p < batch.points() && material.accepted.has_memory(); ++p)
+        scalars[p] = batch.states[p * material.accepted.components];
+      visit({&material.block, batch.first, static_cast<std::int32_t>(batch.cells.size()), material.rule.table, weights,
+             strain, batch.stress, scalars});
     });
   });
 }

@@ -2,10 +2,15 @@
 #pragma once
 
 #include "fe/dof_layout.hpp"
+#include "form/cell_kernel.hpp"
+#include "form/point_states.hpp"
+#include "material/small_law.hpp"
 
 #include <algorithm>
 #include <array>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace amontons {
 
@@ -40,6 +45,30 @@ std::array<PetscInt, Kernel::node_unknowns> cell_equations(const DofLayout& layo
     for (int i = 0; i < Kernel::dim; ++i)
       equations[a * Kernel::dim + i] = layout.equation(nodes[a], i);
   return equations;
+}
+
+/// The virgin states of all points of a mesh, with a law for each of its bodies.
+template <class Law>
+PointStates virgin_states(const Mesh& mesh, Space space, const std::vector<Law>& laws) {
+  PointStates result;
+  for (const auto& block : mesh.blocks) {
+    auto& states = result.blocks.emplace_back();
+    states.points = cell_rule(block.type, space).table->rule->size();
+    states.components = static_cast<int>(state_names(laws[block.body]).size());
+    if (!states.has_memory()) continue;
+    std::vector<double> virgin(states.components);
+    initial_state(laws[block.body], virgin);
+    const std::size_t points = std::size_t(block.size()) * states.points;
+    for (std::size_t p = 0; p < points; ++p)
+      states.states.insert(states.states.end(), virgin.begin(), virgin.end());
+    states.dissipated.assign(points, 0.0);
+  }
+  return result;
+}
+
+/// What Residual::fail is told.
+inline std::string failure_text(const Mesh& mesh, const CellBlock& block, PointOutcome outcome) {
+  return "in body '" + mesh.bodies[block.body] + "' " + std::string(outcome_text(outcome));
 }
 
 } // namespace amontons

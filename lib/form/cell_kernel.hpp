@@ -39,7 +39,7 @@
 // the cell: they lock.
 #pragma once
 
-#include "material/law.hpp"
+#include "material/elastic.hpp"
 #include "math/bubble.hpp"
 #include "math/reference_element.hpp"
 #include "math/space.hpp"

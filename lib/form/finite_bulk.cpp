@@ -30,9 +30,9 @@ struct Batch {
   std::vector<double> stored, dissipated, states;
   std::size_t points() const { return stored.size(); }
   std::size_t stride() const { return points() / cells.size(); }
-  std::span<const double> accepted_states(const PointStates::Block& accepted) const {
-    if (!accepted.has_memory()) return {};
-    return std::span(accepted.states).subspan(first * stride() * accepted.components, states.size());
+  std::size_t first_point() const { return first * stride(); }
+  FinitePoints at_points(const Material& material) const {
+    return {F, material.accepted.states_of(first_point(), points())};
   }
 };
 
@@ -65,7 +65,7 @@ PointOutcome each_batch(const Material& material, std::span<const double> displa
   for (batch.first = 0; batch.first < material.block.size(); batch.first += batch_cells<Kernel>) {
     const std::size_t count = std::min(batch_cells<Kernel>, material.block.size() - batch.first);
     if (!deform(material, displacement, count, batch)) return PointOutcome::Inverted;
-    const auto failure = respond(material.law, material.context, {batch.F, batch.accepted_states(material.accepted)},
+    const auto failure = respond(material.law, material.context, batch.at_points(material),
                                  {batch.piola, batch.stored, batch.dissipated, batch.states});
     if (failure) return failure->outcome;
     work(batch);
@@ -93,7 +93,7 @@ void add_stiffness(const DofLayout& layout, const Material& material, std::span<
   std::vector<double> moduli;
   each_batch<Kernel>(material, displacement, [&](const Batch<Kernel>& batch) {
     moduli.resize(81 * batch.points());
-    if (tangents(material.law, material.context, {batch.F, batch.accepted_states(material.accepted)}, moduli)) return;
+    if (tangents(material.law, material.context, batch.at_points(material), moduli)) return;
     for (std::size_t c = 0; c < batch.cells.size(); ++c) {
       const std::size_t at = c * batch.stride();
       Kernel::stiffness(batch.cells[c], batch.deformations[c], &batch.piola[9 * at], &moduli[81 * at], K);
@@ -155,24 +155,6 @@ void find_spatial_fields(const Batch<Kernel>& batch, int state_components, std::
   }
 }
 
-PointStates virgin_states(const Mesh& mesh, Space space, const std::vector<FiniteLaw>& laws) {
-  PointStates result;
-  for (const auto& block : mesh.blocks) {
-    const FiniteLaw& law = laws[block.body];
-    auto& states = result.blocks.emplace_back();
-    states.points = cell_rule(block.type, space).table->rule->size();
-    states.components = static_cast<int>(state_names(law).size());
-    if (!states.has_memory()) continue;
-    const std::size_t points = std::size_t(block.size()) * states.points;
-    std::vector<double> virgin(states.components);
-    initial_state(law, virgin);
-    for (std::size_t p = 0; p < points; ++p)
-      states.states.insert(states.states.end(), virgin.begin(), virgin.end());
-    states.dissipated.assign(points, 0.0);
-  }
-  return result;
-}
-
 } // namespace
 
 FiniteBulkForm::FiniteBulkForm(const DofLayout& layout, Space space, std::vector<FiniteLaw> laws)
@@ -203,9 +185,7 @@ void FiniteBulkForm::add_residual(const State& state, Residual& residual) {
         scatter<Kernel>(Kernel::forces(batch.cells[c], effective), material.block.cell(number), residual.nodal());
       });
     });
-    if (outcome != PointOutcome::Solved)
-      residual.fail("in body '" + material.mesh.bodies[material.block.body] + "' " +
-                    std::string(outcome_text(outcome)));
+    if (outcome != PointOutcome::Solved) residual.fail(failure_text(material.mesh, material.block, outcome));
   });
 }
 
@@ -224,13 +204,9 @@ void FiniteBulkForm::commit(const State& state) {
   next.time = state.time;
   each_block(state, [&](auto kernel, const Material& material, std::size_t b) {
     using Kernel = decltype(kernel);
-    auto& block = next.blocks[b];
-    if (!block.has_memory()) return;
+    if (!material.accepted.has_memory()) return;
     each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
-      const std::size_t point = batch.first * batch.stride();
-      std::copy(batch.states.begin(), batch.states.end(), block.states.begin() + point * block.components);
-      for (std::size_t p = 0; p < batch.points(); ++p)
-        block.dissipated[point + p] += batch.dissipated[p];
+      next.blocks[b].accept(batch.first_point(), batch.states, batch.dissipated);
     });
   });
   states_ = std::move(next);
@@ -252,8 +228,8 @@ double FiniteBulkForm::dissipated_energy(const State& state) {
     using Kernel = decltype(kernel);
     if (!material.accepted.has_memory()) return;
     each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
-      const auto before = std::span(material.accepted.dissipated).subspan(batch.first * batch.stride(), batch.points());
-      total += weighted(batch, before) + weighted(batch, batch.dissipated);
+      total += weighted(batch, material.accepted.dissipated_at(batch.first_point(), batch.points())) +
+               weighted(batch, batch.dissipated);
     });
   });
   return total;
@@ -272,10 +248,7 @@ double FiniteBulkForm::internal_work(const State& state) {
   return total;
 }
 
-double FiniteBulkForm::stiffness(std::int32_t body) const {
-  const auto [lambda, G] = initial_lame(laws_[body]);
-  return G * (3 * lambda + 2 * G) / (lambda + G);
-}
+double FiniteBulkForm::stiffness(std::int32_t body) const { return young(initial_lame(laws_[body])); }
 
 std::vector<std::string> FiniteBulkForm::scalar_names() const {
   std::vector<std::string> names = {"volume_ratio"};

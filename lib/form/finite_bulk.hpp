@@ -21,6 +21,7 @@ class FiniteBulkForm : public SolidForm {
   void add_residual(const State& state, Residual& residual) override;
   void add_tangent(const State& state, Tangent& tangent) override;
   bool tangent_is_symmetric() const override;
+  bool wants_predictor() const override { return true; }
   void commit(const State& state) override;
   std::any history() const override { return states_; }
   void restore(const std::any& history) override { states_ = std::any_cast<const PointStates&>(history); }

@@ -82,10 +82,19 @@ class Form {
 
   virtual void couple(Coupling& coupling) const = 0;
   virtual void add_residual(const State& state, Residual& residual) = 0;
+  /// The derivative of the residual: a part that never changes, which a Problem assembles once, and the rest. A form
+  /// whose tangent is all of one kind leaves it at add_tangent and tangent_is_constant.
   virtual void add_tangent(const State& state, Tangent& tangent) = 0;
-
-  /// A tangent that never changes is assembled once.
   virtual bool tangent_is_constant() const { return false; }
+  virtual void add_constant_tangent(const State& state, Tangent& tangent) {
+    if (tangent_is_constant()) add_tangent(state, tangent);
+  }
+  virtual void add_changing_tangent(const State& state, Tangent& tangent) {
+    if (!tangent_is_constant()) add_tangent(state, tangent);
+  }
+  /// Does it harm when supports that have moved leave the body behind in the first guess of an increment, so that all
+  /// of the motion is in the cells at the supports? Then the Problem's solver moves the body along.
+  virtual bool wants_predictor() const { return false; }
   virtual bool tangent_is_symmetric() const { return true; }
   /// Would add_tangent add other numbers than at its last call? Asked on each rank for itself.
   virtual bool tangent_changed(const State&) { return !tangent_is_constant(); }

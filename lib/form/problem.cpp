@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace amontons {
 
@@ -15,6 +16,27 @@ constexpr double unloaded_ratio = 1e-3;
 /// Machine epsilons of rounding in a sum over the neighbours of a node.
 constexpr double rounding_factor = 8.0;
 
+/// Size of the cells around each owned node: side of their box over their order.
+std::vector<double> cell_sizes(const Mesh& mesh) {
+  std::vector<double> sizes(mesh.num_local(), 0.0);
+  for (const auto& block : mesh.blocks)
+    for (std::int32_t c = 0; c < block.size(); ++c) {
+      double side = 0.0;
+      for (int i = 0; i < mesh.dim; ++i) {
+        double low = 1e300, high = -1e300;
+        for (const auto node : block.cell(c)) {
+          low = std::min(low, mesh.position(node)[i]);
+          high = std::max(high, mesh.position(node)[i]);
+        }
+        side = std::max(side, high - low);
+      }
+      for (const auto node : block.cell(c))
+        sizes[node] = std::max(sizes[node], side / mesh.order);
+    }
+  sizes.resize(mesh.num_owned);
+  return sizes;
+}
+
 } // namespace
 
 /// Puts blocks into a PETSc matrix, leaving out rows and columns of prescribed equations.
@@ -24,7 +46,7 @@ class Problem::MatrixTangent : public Tangent {
   void add(std::span<const PetscInt> equations, std::span<const double> block) override {
     rows_.resize(equations.size());
     for (std::size_t i = 0; i < equations.size(); ++i)
-      rows_[i] = dropped(equations[i]) ? -1 : equations[i];
+      rows_[i] = problem_.is_dropped(equations[i]) ? -1 : equations[i];
     for (std::size_t i = 0; i < equations.size(); ++i)
       diagonal_sum_ += std::abs(block[i * (equations.size() + 1)]);
     const auto size = static_cast<PetscInt>(rows_.size());
@@ -34,12 +56,6 @@ class Problem::MatrixTangent : public Tangent {
   double diagonal_sum() const { return diagonal_sum_; }
 
  private:
-  bool dropped(PetscInt equation) const {
-    const PetscInt local = equation - problem_.layout_.first_equation();
-    if (local >= 0 && local < problem_.layout_.num_owned()) return problem_.prescribed_flags_[local] != 0;
-    return std::binary_search(problem_.foreign_prescribed_.begin(), problem_.foreign_prescribed_.end(), equation);
-  }
-
   const Problem& problem_;
   Mat matrix_;
   std::vector<PetscInt> rows_;
@@ -59,10 +75,47 @@ class Problem::DiagonalTangent : public Tangent {
   Vec diagonal_;
 };
 
+/// Adds the forces on the free equations that the motion of the supports brings about, to first order.
+class Problem::SupportLoad : public Tangent {
+ public:
+  SupportLoad(const Problem& problem, Vec load)
+      : problem_(problem), load_(load), motion_(problem.support_motion_),
+        foreign_(problem.at_equations(problem.support_motion_, problem.foreign_prescribed_)) {}
+  void add(std::span<const PetscInt> equations, std::span<const double> block) override {
+    const std::size_t size = equations.size();
+    rows_.clear();
+    forces_.clear();
+    motions_.clear();
+    for (const PetscInt equation : equations)
+      motions_.push_back(problem_.is_dropped(equation) ? motion_of(equation) : 0.0);
+    if (std::all_of(motions_.begin(), motions_.end(), [](double motion) { return motion == 0.0; })) return;
+    for (std::size_t i = 0; i < size; ++i) {
+      if (problem_.is_dropped(equations[i])) continue;
+      rows_.push_back(equations[i]);
+      forces_.push_back(std::inner_product(motions_.begin(), motions_.end(), block.begin() + i * size, 0.0));
+    }
+    AMT_PETSC(VecSetValues(load_, static_cast<PetscInt>(rows_.size()), rows_.data(), forces_.data(), ADD_VALUES));
+  }
+
+ private:
+  double motion_of(PetscInt equation) const {
+    const PetscInt local = equation - problem_.layout_.first_equation();
+    if (local >= 0 && local < problem_.layout_.num_owned()) return motion_[local];
+    const auto& known = problem_.foreign_prescribed_;
+    return foreign_[std::lower_bound(known.begin(), known.end(), equation) - known.begin()];
+  }
+  const Problem& problem_;
+  Vec load_;
+  VecReader motion_;
+  std::vector<double> foreign_; // as foreign_prescribed_
+  std::vector<PetscInt> rows_;
+  std::vector<double> forces_, motions_;
+};
+
 Problem::Problem(const DofLayout& layout, std::vector<std::unique_ptr<Form>> forms,
                  std::vector<PrescribedDisplacement> prescribed)
     : layout_(layout), forms_(std::move(forms)), prescribed_(std::move(prescribed)), raw_(layout.new_vector()),
-      displacement_(std::size_t(layout.mesh().num_local()) * layout.dim()) {
+      support_motion_(layout.new_vector()), displacement_(std::size_t(layout.mesh().num_local()) * layout.dim()) {
   find_prescribed();
 }
 
@@ -91,8 +144,35 @@ void Problem::find_prescribed() {
     if (prescribed_flags_[i]) prescribed_equations_.push_back(layout_.first_equation() + i);
 }
 
+/// Is the solid linear?
+bool Problem::is_linear() const {
+  return std::none_of(forms_.begin(), forms_.end(), [](const auto& form) { return form->wants_predictor(); });
+}
+
 bool Problem::tangent_is_symmetric() const {
   return std::all_of(forms_.begin(), forms_.end(), [](const auto& form) { return form->tangent_is_symmetric(); });
+}
+
+/// Is this equation prescribed, on whatever rank? For those that local forms touch.
+bool Problem::is_dropped(PetscInt equation) const {
+  const PetscInt local = equation - layout_.first_equation();
+  if (local >= 0 && local < layout_.num_owned()) return prescribed_flags_[local] != 0;
+  return std::binary_search(foreign_prescribed_.begin(), foreign_prescribed_.end(), equation);
+}
+
+/// Entries of a global vector, whoever owns them. Collective.
+std::vector<double> Problem::at_equations(Vec vector, const std::vector<PetscInt>& equations) const {
+  const auto size = static_cast<PetscInt>(equations.size());
+  VecHandle ours;
+  AMT_PETSC(VecCreateSeq(PETSC_COMM_SELF, size, ours.put()));
+  IsHandle from;
+  AMT_PETSC(ISCreateGeneral(comm(), size, equations.data(), PETSC_COPY_VALUES, from.put()));
+  ScatterHandle scatter;
+  AMT_PETSC(VecScatterCreate(vector, from, ours, nullptr, scatter.put()));
+  AMT_PETSC(VecScatterBegin(scatter, vector, ours, INSERT_VALUES, SCATTER_FORWARD));
+  AMT_PETSC(VecScatterEnd(scatter, vector, ours, INSERT_VALUES, SCATTER_FORWARD));
+  const VecReader values(ours);
+  return {values.data(), values.data() + size};
 }
 
 bool Problem::any_rank(bool mine) const {
@@ -105,12 +185,42 @@ void Problem::begin_increment(double time, Vec unknowns) {
   time_ = time;
   first_guess_ = true;
   const auto& mesh = layout_.mesh();
-  VecArray values(unknowns);
-  for (const auto& condition : prescribed_)
-    for (const auto node : mesh.node_groups.at(condition.group))
-      if (node < mesh.num_owned)
-        values[layout_.equation(node, condition.component) - layout_.first_equation()] =
-            condition.value(time, mesh.position(node));
+  AMT_PETSC(VecSet(support_motion_, 0.0));
+  {
+    VecArray values(unknowns), motion(support_motion_);
+    for (const auto& condition : prescribed_)
+      for (const auto node : mesh.node_groups.at(condition.group)) {
+        if (node >= mesh.num_owned) continue;
+        const PetscInt at = layout_.equation(node, condition.component) - layout_.first_equation();
+        const double value = condition.value(time, mesh.position(node));
+        motion[at] += value - values[at];
+        values[at] = value;
+      }
+  }
+  wants_prediction_ = !is_linear();
+  if (!wants_prediction_) return;
+  double largest = 0.0;
+  AMT_PETSC(VecNorm(support_motion_, NORM_INFINITY, &largest));
+  wants_prediction_ = largest > 0.0;
+}
+
+bool Problem::begin_prediction(Vec unknowns, Mat matrix, Vec load) {
+  wants_prediction_ = false;
+  AMT_PETSC(VecAXPY(unknowns, -1.0, support_motion_));
+  if (!residual(unknowns, load)) return false;
+  tangent(unknowns, matrix);
+  const auto state = state_at(unknowns);
+  SupportLoad supports(*this, load);
+  for (const auto& form : forms_)
+    form->add_tangent(state, supports);
+  AMT_PETSC(VecAssemblyBegin(load));
+  AMT_PETSC(VecAssemblyEnd(load));
+  return true;
+}
+
+void Problem::end_prediction(Vec unknowns, Vec step) {
+  AMT_PETSC(VecAXPY(unknowns, 1.0, support_motion_));
+  AMT_PETSC(VecAXPY(unknowns, -1.0, step));
 }
 
 void Problem::commit(Vec unknowns) {
@@ -160,6 +270,14 @@ State Problem::state_at(Vec unknowns) {
 void Problem::estimate_rounding(Vec unknowns) {
   if (!diagonal_) return;
   AMT_PETSC(VecPointwiseMult(scratch_, diagonal_, unknowns));
+  if (!is_linear()) {
+    // F = 1 + ∂u/∂X is rounded like 1 however small u is: as if u were off by that part of the cells' size.
+    VecArray forces(scratch_);
+    VecReader stiffness(diagonal_);
+    const auto sizes = cell_sizes(layout_.mesh());
+    for (PetscInt i = 0; i < layout_.mesh().num_owned * layout_.dim(); ++i)
+      forces[i] = std::abs(forces[i]) + std::abs(stiffness[i]) * sizes[i / layout_.dim()];
+  }
   AMT_PETSC(VecNorm(scratch_, NORM_2, &rounding_));
   rounding_ *= rounding_factor * PETSC_MACHINE_EPSILON;
 }
@@ -228,23 +346,15 @@ void Problem::build_pattern(Mat matrix) {
 
   // Which of the other ranks' equations that our forms touch are prescribed there?
   const auto foreign = sparsity.foreign_equations();
-  VecHandle flags = layout_.new_vector(), ours;
+  VecHandle flags = layout_.new_vector();
   {
     VecArray values(flags);
     for (PetscInt i = 0; i < values.size(); ++i)
       values[i] = prescribed_flags_[i];
   }
-  const auto size = static_cast<PetscInt>(foreign.size());
-  AMT_PETSC(VecCreateSeq(PETSC_COMM_SELF, size, ours.put()));
-  IsHandle from;
-  AMT_PETSC(ISCreateGeneral(comm(), size, foreign.data(), PETSC_COPY_VALUES, from.put()));
-  ScatterHandle scatter;
-  AMT_PETSC(VecScatterCreate(flags, from, ours, nullptr, scatter.put()));
-  AMT_PETSC(VecScatterBegin(scatter, flags, ours, INSERT_VALUES, SCATTER_FORWARD));
-  AMT_PETSC(VecScatterEnd(scatter, flags, ours, INSERT_VALUES, SCATTER_FORWARD));
+  const auto values = at_equations(flags, foreign);
   foreign_prescribed_.clear();
-  VecReader values(ours);
-  for (PetscInt i = 0; i < size; ++i)
+  for (std::size_t i = 0; i < foreign.size(); ++i)
     if (values[i] != 0.0) foreign_prescribed_.push_back(foreign[i]);
 
   sparsity.preallocate(matrix);
@@ -253,17 +363,17 @@ void Problem::build_pattern(Mat matrix) {
 
 void Problem::add_changing(const State& state, Mat matrix) {
   MatrixTangent tangent(*this, matrix);
-  for (const auto& form : forms_)
-    if (!form->tangent_is_constant()) {
-      const Phase phase(form->name());
-      form->add_tangent(state, tangent);
-    }
+  for (const auto& form : forms_) {
+    const Phase phase(form->name());
+    form->add_changing_tangent(state, tangent);
+  }
   const Phase phase("matrix");
   AMT_PETSC(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
 }
 
-/// Takes the diagonal of the whole tangent, in problems without a constant part; returns the sum of absolute values.
+/// Takes the diagonal of the whole tangent, in problems where the constant part is not the solid; returns the sum of
+/// absolute values.
 double Problem::probe_diagonal(const State& state) {
   DiagonalTangent tangent(diagonal_);
   for (const auto& form : forms_)
@@ -282,18 +392,16 @@ void Problem::assemble_constant(const State& state, Mat matrix) {
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_TRUE));
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_TRUE));
   MatrixTangent tangent(*this, matrix);
-  for (const auto& form : forms_)
-    if (form->tangent_is_constant()) {
-      const Phase phase(form->name());
-      form->add_tangent(state, tangent);
-    }
+  for (const auto& form : forms_) {
+    const Phase phase(form->name());
+    form->add_constant_tangent(state, tangent);
+  }
   // Prescribed and idle equations get the mean diagonal, so that they spoil neither conditioning nor scaling.
   double mean = tangent.diagonal_sum();
   MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPI_DOUBLE, MPI_SUM, comm());
   diagonal_ = layout_.new_vector();
   scratch_ = layout_.new_vector();
-  const bool has_constant = mean > 0.0;
-  if (!has_constant) mean = probe_diagonal(state);
+  if (!is_linear()) mean = probe_diagonal(state);
   mean = mean > 0.0 ? mean / static_cast<double>(layout_.num_global()) : 1.0;
   for (const auto& equations : {std::span<const PetscInt>(prescribed_equations_), std::span(layout_.idle_equations())})
     for (const PetscInt equation : equations)
@@ -318,7 +426,7 @@ void Problem::assemble_constant(const State& state, Mat matrix) {
   AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_FALSE));
   AMT_PETSC(MatDuplicate(matrix, MAT_COPY_VALUES, constant_.put()));
-  if (has_constant) AMT_PETSC(MatGetDiagonal(matrix, diagonal_));
+  if (is_linear()) AMT_PETSC(MatGetDiagonal(matrix, diagonal_));
   constant_ready_ = true;
 }
 

@@ -75,9 +75,19 @@ class Problem {
   double force_scale() const { return force_scale_; }
 
   /// What of the last residual may be rounding: some machine epsilons times the norm of (diagonal of the constant
-  /// tangent x unknowns), or of the first tangent where no part is constant. A stiff body moved by a soft one has
+  /// tangent x unknowns), or of the first tangent where the solid is not linear. A stiff body moved by a soft one has
   /// internal forces that cancel far more than the load. Zero before the first tangent. Same on every rank.
   double rounding() const { return rounding_; }
+
+  /// Do supports move in the increment begun, so that a form wants the body moved along first
+  /// (Form::wants_predictor)? No longer once that has been done. Same on every rank.
+  bool wants_prediction() const { return wants_prediction_; }
+  /// One Newton step from the last accepted state that knows where the supports go: takes their motion Δ back out of
+  /// `unknowns`, assembles tangent K and residual r there, and gives `load` = r + K Δ in the free equations; then
+  /// `unknowns` + Δ − K^-1 load is the prediction. False where there is no residual. Collective.
+  bool begin_prediction(Vec unknowns, Mat matrix, Vec load);
+  /// `unknowns` += Δ − step.
+  void end_prediction(Vec unknowns, Vec step);
 
   /// A matrix for the tangent. Collective.
   MatHandle new_matrix();
@@ -93,12 +103,16 @@ class Problem {
  private:
   class MatrixTangent;
   class DiagonalTangent;
+  class SupportLoad;
   void find_prescribed();
   void estimate_rounding(Vec unknowns);
   void build_pattern(Mat matrix);
   double probe_diagonal(const State& state);
   void assemble_constant(const State& state, Mat matrix);
   bool any_rank(bool mine) const;
+  bool is_linear() const;
+  bool is_dropped(PetscInt equation) const;
+  std::vector<double> at_equations(Vec vector, const std::vector<PetscInt>& equations) const;
   void share_failure(const std::string& mine);
   void add_changing(const State& state, Mat matrix);
 
@@ -108,15 +122,15 @@ class Problem {
   std::vector<std::uint8_t> prescribed_flags_; // per owned equation
   std::vector<PetscInt> prescribed_equations_; // owned, ascending
   std::vector<PetscInt> foreign_prescribed_;   // other ranks' prescribed equations that local forms touch, ascending
-  VecHandle raw_;
+  VecHandle raw_, support_motion_;
   std::vector<double> displacement_;
   double time_ = 0.0, accepted_time_ = 0.0;
   MatHandle constant_; // the constant part, with the whole pattern
-  VecHandle diagonal_, scratch_; // of the constant tangent, or where there is none of the first one
+  VecHandle diagonal_, scratch_; // of the constant tangent, or of the first one where the solid is not linear
   double rounding_ = 0.0;
   double force_scale_ = 0.0, largest_accepted_force_ = 0.0;
   std::string failure_;
-  bool first_guess_ = false;
+  bool first_guess_ = false, wants_prediction_ = false;
   bool constant_ready_ = false, tangent_ready_ = false;
 };
 

@@ -34,10 +34,7 @@ SmallLaw small_law(const BulkMaterial& material, const std::string& name) {
 
 FiniteLaw finite_law(const BulkMaterial& material) { return std::visit(FiniteLawOf{}, material); }
 
-double initial_stiffness(const BulkMaterial& material) {
-  const auto [lambda, G] = initial_lame(finite_law(material));
-  return G * (3 * lambda + 2 * G) / (lambda + G);
-}
+double initial_stiffness(const BulkMaterial& material) { return young(initial_lame(finite_law(material))); }
 
 Rule<BulkMaterial> bulk_material_rule() {
   return TaggedRule<BulkMaterial>()

@@ -3,46 +3,6 @@
 #include "base/error.hpp"
 
 namespace amontons {
-namespace {
-
-template <int dim>
-class ElasticLaw : public BulkLaw {
- public:
-  ElasticLaw(const Elastic& material, Space space)
-      : material_(material), space_(space), lame_(lame_constants(material, space)) {}
-
-  void stress(std::span<const double> strain, std::span<double> stress) const override {
-    for (std::size_t i = 0; i < strain.size(); i += size)
-      Eigen::Map<Stress<dim>>{&stress[i]} = elastic_stress<dim>(lame_, space_, point(strain, i));
-  }
-  void energy(std::span<const double> strain, std::span<double> density) const override {
-    for (std::size_t i = 0; i < strain.size(); i += size)
-      density[i / size] = elastic_energy<dim>(lame_, space_, point(strain, i));
-  }
-  void moduli(std::span<const double> strain, std::span<double> moduli) const override {
-    for (std::size_t i = 0; i < strain.size(); i += size)
-      Eigen::Map<Moduli<dim>>{&moduli[i * size]} = elastic_moduli<dim>(lame_, space_);
-  }
-  std::optional<Lame> constant_lame() const override { return lame_; }
-  double stiffness() const override { return material_.young; }
-  void complete_strain(std::span<double> strain) const override {
-    if (space_ != Space::PlaneStress) return;
-    for (std::size_t i = 0; i < strain.size(); i += size)
-      strain[i + 2] = plane_stress_zz_strain(material_, strain[i], strain[i + 1]);
-  }
-
- private:
-  static constexpr std::size_t size = strain_size<dim>;
-  static Strain<dim> point(std::span<const double> strain, std::size_t i) {
-    return Eigen::Map<const Strain<dim>>(&strain[i]);
-  }
-  Elastic material_;
-  Space space_;
-  Lame lame_;
-};
-
-} // namespace
-
 Lame lame_constants(const Elastic& material, Space space) {
   const auto [E, nu] = material;
   if (!(E > 0)) throw UserError("Young's modulus E = " + std::to_string(E) + " must be positive.");
@@ -85,11 +45,6 @@ Moduli<dim> elastic_moduli(const Lame& lame, Space space) {
 
 double plane_stress_zz_strain(const Elastic& material, double xx, double yy) {
   return -material.poisson / (1 - material.poisson) * (xx + yy);
-}
-
-BulkLawPtr make_law(const Elastic& material, Space space) {
-  if (space_dim(space) == 2) return std::make_shared<ElasticLaw<2>>(material, space);
-  return std::make_shared<ElasticLaw<3>>(material, space);
 }
 
 template Stress<2> elastic_stress<2>(const Lame&, Space, const Strain<2>&);

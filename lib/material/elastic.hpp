@@ -2,10 +2,19 @@
 // numbers.
 #pragma once
 
-#include "material/law.hpp"
+#include "math/space.hpp"
 #include "math/tensor.hpp"
 
 namespace amontons {
+
+/// σ = λ tr(ε) 1 + 2 G ε over the in-plane components (all three in axisymmetric and solid space). Same unit as stress.
+struct Lame {
+  double lambda;
+  double G;
+};
+
+/// Young's modulus E = G (3 λ + 2 G) / (λ + G), of three-dimensional constants.
+inline double young(const Lame& lame) { return lame.G * (3 * lame.lambda + 2 * lame.G) / (lame.lambda + lame.G); }
 
 /// Parameters as a user knows them.
 struct Elastic {
@@ -32,8 +41,5 @@ Moduli<dim> elastic_moduli(const Lame& lame, Space space);
 
 /// ε_zz = -nu / (1 - nu) (ε_xx + ε_yy) in plane stress.
 double plane_stress_zz_strain(const Elastic& material, double xx, double yy);
-
-/// The law of this material for forms in `space`.
-BulkLawPtr make_law(const Elastic& material, Space space);
 
 } // namespace amontons

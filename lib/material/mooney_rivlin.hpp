@@ -1,7 +1,7 @@
 // Mooney-Rivlin elasticity of rubber, slightly compressible.
 #pragma once
 
-#include "material/law.hpp"
+#include "material/elastic.hpp"
 #include "material/point.hpp"
 
 namespace amontons {

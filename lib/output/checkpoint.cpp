@@ -14,7 +14,7 @@ namespace amontons {
 
 namespace {
 
-constexpr std::int64_t format_version = 2;
+constexpr std::int64_t format_version = 3;
 const std::string root = "/checkpoint";
 
 /// FNV-1a: enough to tell two decks apart, and the same on every machine.
@@ -51,17 +51,50 @@ std::vector<std::uint64_t> joined(std::span<const double> values) {
   return keys;
 }
 
-/// A name of each facet on this rank that depends on nothing but the keys of its corners.
-std::vector<std::uint64_t> facet_keys(const Mesh& mesh, const FacetSet& facets) {
-  std::vector<std::uint64_t> names;
-  for (std::int32_t f = 0; f < facets.size(); ++f) {
-    std::vector<std::int64_t> corners;
-    for (int a = 0; a < num_vertices(facets.types[f]); ++a)
-      corners.push_back(static_cast<std::int64_t>(mesh.keys[facets.facet(f)[a]]));
-    names.push_back(CornerSetHash{}(corner_set<4>(corners)));
-  }
-  return names;
+/// A name of a facet or cell that depends on nothing but the keys of its corners.
+std::uint64_t element_key(const Mesh& mesh, ElementType type, std::span<const std::int32_t> nodes) {
+  std::vector<std::int64_t> corners;
+  for (int a = 0; a < num_vertices(type); ++a)
+    corners.push_back(static_cast<std::int64_t>(mesh.keys[nodes[a]]));
+  return corners.size() > 4 ? CornerSetHash{}(corner_set<8>(corners)) : CornerSetHash{}(corner_set<4>(corners));
 }
+
+/// What the two kinds of rows differ in: what they are called in the file, the group that they belong to, and the keys
+/// of the group's elements on this rank (none for a group that the mesh lacks).
+struct FacetRows {
+  using Array = FacetArray;
+  static constexpr const char* kind = "facet";
+  static auto& arrays(auto& checkpoint) { return checkpoint.facets; }
+  static auto& group(auto& array) { return array.surface; }
+  static std::string description(const Array& array) { return "surface '" + array.surface + "'"; }
+  static bool has_group(const Mesh& mesh, const Array& array) { return mesh.surfaces.contains(array.surface); }
+  static std::vector<std::uint64_t> keys(const Mesh& mesh, const Array& array) {
+    std::vector<std::uint64_t> names;
+    if (!has_group(mesh, array)) return names;
+    const FacetSet& facets = mesh.surfaces.at(array.surface);
+    for (std::int32_t f = 0; f < facets.size(); ++f)
+      names.push_back(element_key(mesh, facets.types[f], facets.facet(f)));
+    return names;
+  }
+};
+
+struct CellRows {
+  using Array = CellArray;
+  static constexpr const char* kind = "cell";
+  static auto& arrays(auto& checkpoint) { return checkpoint.cells; }
+  static auto& group(auto& array) { return array.body; }
+  static std::string description(const Array& array) { return "body '" + array.body + "'"; }
+  static bool has_group(const Mesh& mesh, const Array& array) {
+    return std::find(mesh.bodies.begin(), mesh.bodies.end(), array.body) != mesh.bodies.end();
+  }
+  static std::vector<std::uint64_t> keys(const Mesh& mesh, const Array& array) {
+    std::vector<std::uint64_t> names;
+    for (const auto& block : mesh.blocks)
+      for (std::int32_t c = 0; mesh.bodies[block.body] == array.body && c < block.size(); ++c)
+        names.push_back(element_key(mesh, block.type, block.cell(c)));
+    return names;
+  }
+};
 
 std::int64_t sum_over_ranks(MPI_Comm comm, std::int64_t mine) {
   std::int64_t sum = 0;
@@ -75,22 +108,24 @@ std::string attribute(const char* kind, std::size_t i, const char* what) {
   return std::string(kind) + "_" + std::to_string(i) + "_" + what;
 }
 
-/// Facet arrays: keys and numbers of rows, facet by facet, and the rows themselves.
-void write_facets(Hdf5File& file, const Mesh& mesh, const Checkpoint& checkpoint) {
-  file.write_attribute(root, "facet_count", std::int64_t(checkpoint.facets.size()));
+/// Arrays of one kind: keys and numbers of rows, element by element, and the rows themselves.
+template <class Kind>
+void write_rows(Hdf5File& file, const Mesh& mesh, const Checkpoint& checkpoint) {
+  const std::string kind = Kind::kind;
+  file.write_attribute(root, kind + "_count", std::int64_t(Kind::arrays(checkpoint).size()));
   std::size_t i = 0;
-  for (const auto& [name, array] : checkpoint.facets) {
-    const auto keys = facet_keys(mesh, mesh.surfaces.at(array.surface));
-    file.write_attribute(root, attribute("facet", i, "name"), name);
-    file.write_attribute(root, attribute("facet", i, "surface"), array.surface);
-    file.write_attribute(root, attribute("facet", i, "components"), std::int64_t(array.components));
-    file.write_attribute(root, attribute("facet", i, "facets"),
+  for (const auto& [name, array] : Kind::arrays(checkpoint)) {
+    const auto keys = Kind::keys(mesh, array);
+    file.write_attribute(root, attribute(Kind::kind, i, "name"), name);
+    file.write_attribute(root, attribute(Kind::kind, i, "group"), Kind::group(array));
+    file.write_attribute(root, attribute(Kind::kind, i, "components"), std::int64_t(array.components));
+    file.write_attribute(root, attribute(Kind::kind, i, "elements"),
                          sum_over_ranks(mesh.comm, static_cast<std::int64_t>(keys.size())));
-    file.write_attribute(root, attribute("facet", i, "rows"),
+    file.write_attribute(root, attribute(Kind::kind, i, "rows"),
                          sum_over_ranks(mesh.comm, static_cast<std::int64_t>(array.values.size()) / array.components));
-    file.write(dataset("facet_keys", i), 2, halves(keys));
-    file.write(dataset("facet_rows", i), 1, std::vector<double>(array.rows.begin(), array.rows.end()));
-    file.write(dataset("facet", i), array.components, array.values);
+    file.write(dataset((kind + "_keys").c_str(), i), 2, halves(keys));
+    file.write(dataset((kind + "_rows").c_str(), i), 1, std::vector<double>(array.rows.begin(), array.rows.end()));
+    file.write(dataset(Kind::kind, i), array.components, array.values);
     ++i;
   }
 }
@@ -115,7 +150,8 @@ void write_contents(Hdf5File& file, const Mesh& mesh, const std::string& identit
     file.write(dataset("nodal", i), array.components, std::span(array.values).first(owned * array.components));
     ++i;
   }
-  write_facets(file, mesh, checkpoint);
+  write_rows<FacetRows>(file, mesh, checkpoint);
+  write_rows<CellRows>(file, mesh, checkpoint);
 
   int rank = 0;
   MPI_Comm_rank(mesh.comm, &rank);
@@ -201,7 +237,7 @@ void read_nodal(Hdf5File& file, const Mesh& mesh, const std::string& path, Check
   }
 }
 
-/// First row and number of rows in the file of each wanted facet (rows of the facet tables). Collective.
+/// First row and number of rows in the file of each wanted element (rows of the tables of keys). Collective.
 std::vector<double> row_ranges(MPI_Comm comm, const std::vector<double>& rows_in_file,
                                std::span<const PetscInt> wanted) {
   double mine = std::accumulate(rows_in_file.begin(), rows_in_file.end(), 0.0), first = 0.0;
@@ -217,24 +253,23 @@ std::vector<double> row_ranges(MPI_Comm comm, const std::vector<double>& rows_in
   return picked(comm, 2, std::move(ranges), wanted);
 }
 
-void read_facets(Hdf5File& file, const Mesh& mesh, const std::string& path, Checkpoint& checkpoint) {
-  const auto count = static_cast<std::size_t>(file.read_integer(root, "facet_count"));
+template <class Kind>
+void read_rows(Hdf5File& file, const Mesh& mesh, const std::string& path, Checkpoint& checkpoint) {
+  const std::string kind = Kind::kind;
+  const auto count = static_cast<std::size_t>(file.read_integer(root, kind + "_count"));
   for (std::size_t i = 0; i < count; ++i) {
-    FacetArray array;
-    array.surface = file.read_string(root, attribute("facet", i, "surface"));
-    array.components = static_cast<int>(file.read_integer(root, attribute("facet", i, "components")));
-    const Share share = even_share(mesh.comm, file.read_integer(root, attribute("facet", i, "facets")));
-    const Share rows = even_share(mesh.comm, file.read_integer(root, attribute("facet", i, "rows")));
-    const auto keys = joined(file.read(dataset("facet_keys", i), 2 * share.size));
-    const auto rows_in_file = file.read(dataset("facet_rows", i), share.size);
-    auto in_file = file.read(dataset("facet", i), array.components * rows.size);
-    const auto surface = mesh.surfaces.find(array.surface);
-    const FacetSet none;
-    const auto found = rows_of_keys(mesh.comm, keys, share.first,
-                                    facet_keys(mesh, surface == mesh.surfaces.end() ? none : surface->second));
+    typename Kind::Array array;
+    Kind::group(array) = file.read_string(root, attribute(Kind::kind, i, "group"));
+    array.components = static_cast<int>(file.read_integer(root, attribute(Kind::kind, i, "components")));
+    const Share share = even_share(mesh.comm, file.read_integer(root, attribute(Kind::kind, i, "elements")));
+    const Share rows = even_share(mesh.comm, file.read_integer(root, attribute(Kind::kind, i, "rows")));
+    const auto keys = joined(file.read(dataset((kind + "_keys").c_str(), i), 2 * share.size));
+    const auto rows_in_file = file.read(dataset((kind + "_rows").c_str(), i), share.size);
+    auto in_file = file.read(dataset(Kind::kind, i), array.components * rows.size);
+    const auto found = rows_of_keys(mesh.comm, keys, share.first, Kind::keys(mesh, array));
     together(mesh.comm, [&] {
-      if (surface == mesh.surfaces.end() || std::find(found.begin(), found.end(), -1) != found.end())
-        refuse(path, "its surface '" + array.surface + "' is not that of this mesh");
+      if (!Kind::has_group(mesh, array) || std::find(found.begin(), found.end(), -1) != found.end())
+        refuse(path, "its " + Kind::description(array) + " is not that of this mesh");
     });
     const auto ranges = row_ranges(mesh.comm, rows_in_file, std::vector<PetscInt>(found.begin(), found.end()));
     std::vector<PetscInt> wanted;
@@ -244,7 +279,7 @@ void read_facets(Hdf5File& file, const Mesh& mesh, const std::string& path, Chec
         wanted.push_back(static_cast<PetscInt>(ranges[2 * f]) + row);
     }
     array.values = picked(mesh.comm, array.components, std::move(in_file), wanted);
-    checkpoint.facets[file.read_string(root, attribute("facet", i, "name"))] = std::move(array);
+    Kind::arrays(checkpoint)[file.read_string(root, attribute(Kind::kind, i, "name"))] = std::move(array);
   }
 }
 
@@ -290,7 +325,8 @@ Checkpoint read_checkpoint(const Mesh& mesh, const std::string& path, const std:
   checkpoint.increment = static_cast<int>(file.read_integer(root, "increment"));
   checkpoint.next_increment = file.read_double(root, "next_increment");
   read_nodal(file, mesh, path, checkpoint);
-  read_facets(file, mesh, path, checkpoint);
+  read_rows<FacetRows>(file, mesh, path, checkpoint);
+  read_rows<CellRows>(file, mesh, path, checkpoint);
   read_global(file, mesh.comm, checkpoint);
   file.finish();
   return checkpoint;

@@ -1,5 +1,5 @@
 // checkpoint.h5: everything a run needs to go on, on any number of ranks. Nodal values are found again by Mesh::keys,
-// which do not depend on the partition, values on facets by the keys of the facet's corners.
+// which do not depend on the partition, values on facets and cells by the keys of their corners.
 #pragma once
 
 #include "mesh/mesh.hpp"
@@ -26,6 +26,14 @@ struct FacetArray {
   std::vector<double> values;     // facet by facet: sum of rows x components
 };
 
+/// The same on the cells of a body.
+struct CellArray {
+  std::string body; // one of Mesh::bodies
+  int components = 1;
+  std::vector<std::int32_t> rows; // per cell of the body on this rank, block by block
+  std::vector<double> values;     // cell by cell: sum of rows x components
+};
+
 struct Checkpoint {
   double time = 0.0;
   int step = 0;                // index of the deck's step that the accepted state belongs to
@@ -35,6 +43,7 @@ struct Checkpoint {
   std::map<std::string, std::vector<double>> global;
   std::map<std::string, NodalArray> nodal;
   std::map<std::string, FacetArray> facets;
+  std::map<std::string, CellArray> cells;
 };
 
 /// Writes the checkpoint of a run on `mesh` to `path`, beside an older one until it is complete, then in its place: an

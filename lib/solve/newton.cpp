@@ -146,6 +146,28 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
 }
 
+/// From a first failure on, steps are looked at before they are taken, at the price of a residual each.
+void Newton::guard_domain() {
+  SNESLineSearch search = nullptr;
+  AMT_PETSC(SNESGetLineSearch(snes_, &search));
+  AMT_PETSC(SNESLineSearchSetPreCheck(search, stay_in_domain, this));
+}
+
+/// Halves a step that leads where there is no residual (cells turned inside out), before any line search sees it.
+PetscErrorCode Newton::stay_in_domain(SNESLineSearch, Vec start, Vec step, PetscBool* changed, void* self) {
+  constexpr int most_halvings = 8;
+  auto& newton = *static_cast<Newton*>(self);
+  return guarded(newton.kept_, [&] {
+    const auto next = newton.problem_.layout().new_vector(), force = newton.problem_.layout().new_vector();
+    for (int halving = 0; halving < most_halvings; ++halving) {
+      AMT_PETSC(VecWAXPY(next, -1.0, step, start));
+      if (newton.problem_.residual(next, force)) return;
+      AMT_PETSC(VecScale(step, 0.5));
+      *changed = PETSC_TRUE;
+    }
+  });
+}
+
 /// Backtracking goes back until |F|² has fallen by alpha of what the tangent promises. A tangent that is no derivative
 /// promises nothing: with a large negative alpha its full step passes.
 void Newton::ask_for_decrease(bool is_asked) {
@@ -179,15 +201,33 @@ PetscErrorCode Newton::test_convergence(SNES snes, PetscInt iteration, PetscReal
   });
 }
 
+/// Where the supports move a body that must not be strained by their motion alone; see Problem::begin_prediction.
+void Newton::predict(Vec unknowns) {
+  VecHandle load = problem_.layout().new_vector(), step = problem_.layout().new_vector();
+  if (problem_.begin_prediction(unknowns, matrix_, load)) {
+    KSP solver = nullptr;
+    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+    AMT_PETSC(SNESGetKSP(snes_, &solver));
+    AMT_PETSC(KSPSetOperators(solver, matrix_, matrix_));
+    AMT_PETSC(KSPSolve(solver, load, step));
+    AMT_PETSC(KSPGetConvergedReason(solver, &reason));
+    ++factorizations_;
+    if (reason < 0) AMT_PETSC(VecSet(step, 0.0)); // the solve from there will tell what is wrong
+  }
+  problem_.end_prediction(unknowns, step);
+}
+
 SolveOutcome Newton::solve(Vec unknowns) {
   factorizations_ = 0;
   kept_ = nullptr;
   const Phase phase("linear solver"); // the phases of forms inside stop this clock
+  if (problem_.wants_prediction()) predict(unknowns);
   const PetscErrorCode code = SNESSolve(snes_, nullptr, unknowns);
   if (kept_) std::rethrow_exception(kept_);
   AMT_PETSC(code);
   SolveOutcome outcome = outcome_of(snes_, problem_);
   outcome.factorizations = factorizations_;
+  if (!outcome.converged && !problem_.failure().empty()) guard_domain();
   return outcome;
 }
 

@@ -60,7 +60,10 @@ class Newton {
   static PetscErrorCode evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, void* self);
   static PetscErrorCode test_convergence(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                          SNESConvergedReason* reason, void* self);
+  static PetscErrorCode stay_in_domain(SNESLineSearch, Vec start, Vec step, PetscBool* changed, void* self);
+  void guard_domain();
   void ask_for_decrease(bool is_asked);
+  void predict(Vec unknowns);
 
   Problem& problem_;
   std::function<bool()> interrupted_;

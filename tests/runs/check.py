@@ -17,6 +17,7 @@ import yaml
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scenes"))
 from friction_runs import path_control, restart_of_friction  # noqa: E402
 from harness import TOP, load_deck, set_key  # noqa: E402
+from plastic_runs import restart_of_plasticity  # noqa: E402
 
 HERTZ = "hertz_2d"
 CHEAP = {"mesh.parameters.h": 0.1, "steps.0.increments": 4}
@@ -206,6 +207,7 @@ def main():
     cases = {
         "restart": restart,
         "restart_of_friction": restart_of_friction,
+        "restart_of_plasticity": restart_of_plasticity,
         "path_control": path_control,
         "interrupt": interrupt,
         "statuses": statuses,

@@ -14,6 +14,7 @@ import friction_cases
 import hertz_cases
 import other_cases
 import patch_cases
+import solid_cases
 import vi_cases
 from harness import Bench
 
@@ -23,6 +24,7 @@ CASES = {
     **other_cases.CASES,
     **friction_cases.CASES,
     **block_cases.CASES,
+    **solid_cases.CASES,
     **vi_cases.CASES,
     **finite_contact_cases.CASES,
 }

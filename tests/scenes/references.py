@@ -208,3 +208,40 @@ def runge_kutta(rates, start, times, largest_step):
         now = time
         states.append(state)
     return np.array(states)
+
+
+def bisected(function, low, high):
+    """The root of a function that rises from below zero at `low` to above at `high`."""
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if function(middle) < 0.0 else (low, middle)
+    return 0.5 * (low + high)
+
+
+def inflated_cylinder_growth(pressure, shear_modulus, inner, outer):
+    """Displacement of the bore of a long tube of incompressible neo-Hookean rubber under a pressure in it, plane strain.
+
+    The volume inside a radius R grows by the same area everywhere, r² = R² + c, so the stretches are lam = r / R around and
+    1 / lam along the radius. Equilibrium, d sigma_r / dr = G (lam² - lam^-2) / r, integrated over the wall:
+    p = G [ln(lam_a / lam_b) + (lam_b^-2 - lam_a^-2) / 2] (R. S. Rivlin, Phil. Trans. R. Soc. A 242 (1949) 173-195).
+    """
+
+    def excess(stretch):
+        outside = np.sqrt(1.0 + (stretch**2 - 1.0) * (inner / outer) ** 2)
+        return shear_modulus * (np.log(stretch / outside) + 0.5 * (outside**-2 - stretch**-2)) - pressure
+
+    return inner * (bisected(excess, 1.0, 100.0) - 1.0)
+
+
+def voce(law, plastic_strain):
+    return law["yield"] + law["Q"] * (1.0 - np.exp(-law["b"] * plastic_strain)) + law["H"] * plastic_strain
+
+
+def round_bar_force(strain, law, radius):
+    """Axial force of a uniform round bar at a logarithmic strain beyond yield, elasticity linear in logarithmic strain.
+
+    Kirchhoff's stress is the yield stress, strain = yield(p) / E + p, and force = first section x Kirchhoff's stress / stretch.
+    """
+    hardening = law["hardening"]["voce"]
+    p = bisected(lambda p: voce(hardening, p) / law["E"] + p - strain, 0.0, strain)
+    return np.pi * radius**2 * voce(hardening, p) * np.exp(-strain)

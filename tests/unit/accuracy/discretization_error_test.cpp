@@ -135,7 +135,7 @@ struct Errors {
 Errors errors(const Case& scene, int n) {
   const Mesh mesh = box(PETSC_COMM_SELF, scene.type, n);
   const DofLayout layout(mesh, {}, {});
-  BulkForm solid(layout, scene.space, {make_law(material, scene.space)});
+  BulkForm solid(layout, scene.space, {material});
   LoadForm loads(layout, scene.space, {}, {}, {});
   const Field field = lame_displacement(scene.space);
   std::map<Eigen::Index, double> prescribed;
@@ -177,7 +177,7 @@ TEST_CASE("estimated error: zero where the elements have the exact solution, on 
     CAPTURE(int(scene.space));
     const Mesh mesh = box(PETSC_COMM_WORLD, scene.type, 3);
     const DofLayout layout(mesh, {}, {});
-    BulkForm solid(layout, scene.space, {make_law(material, scene.space)});
+    BulkForm solid(layout, scene.space, {material});
     const Eigen::VectorXd u = nodal_values(mesh, reproduced(scene.space, element_order(scene.type)));
     const auto error = estimate_discretization_error(solid, mesh, state_of(u), {});
     CHECK(error.solution > 0.01);
@@ -208,7 +208,7 @@ TEST_CASE("estimated error: the same on any number of ranks") {
     const auto estimate = [&](MPI_Comm comm) {
       const Mesh mesh = box(comm, scene.type, 4);
       const DofLayout layout(mesh, {}, {});
-      BulkForm solid(layout, scene.space, {make_law(material, scene.space)});
+      BulkForm solid(layout, scene.space, {material});
       const Eigen::VectorXd u = nodal_values(mesh, lame_displacement(scene.space));
       return estimate_discretization_error(solid, mesh, state_of(u), {});
     };
@@ -245,7 +245,7 @@ TEST_CASE("edge of contact: where the status changes, and the part of the error 
     const auto share = [&](double x, double y) { // of the error of a kink at this place
       const DofLayout layout(mesh, {}, {});
       const Space space = mesh.dim == 2 ? Space::PlaneStrain : Space::Solid;
-      BulkForm solid(layout, space, {make_law(material, space)});
+      BulkForm solid(layout, space, {material});
       const auto kink = nodal_values(mesh, [x, y](auto place) -> std::array<double, 3> {
         const double distance = std::hypot(place[0] - x, place[1] - y);
         return {0, 1e-3 * std::max(0.0, 1.0 / 6 - distance), 0};

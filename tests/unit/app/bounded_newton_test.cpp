@@ -42,7 +42,7 @@ struct Fixture {
     if (!is_bound) fields.push_back(multiplier_nodes(mesh, "interface", "upper_bottom"));
     layout = std::make_unique<DofLayout>(mesh, std::vector<TiedGroup>{}, fields);
     const Space space = dim == 2 ? Space::PlaneStrain : Space::Solid;
-    const std::vector<BulkLawPtr> laws = {make_law(Elastic{300.0, 0.2}, space), make_law(Elastic{100.0, 0.3}, space)};
+    const std::vector<SmallLaw> laws = {Elastic{300.0, 0.2}, Elastic{100.0, 0.3}};
     std::vector<std::unique_ptr<Form>> forms;
     forms.push_back(std::make_unique<BulkForm>(*layout, space, laws));
     ContactPair declared{.name = "interface",

@@ -39,7 +39,7 @@ struct Push {
     std::vector<std::unique_ptr<Form>> forms;
     forms.push_back(std::make_unique<BulkForm>(
         layout, space,
-        std::vector<BulkLawPtr>{make_law(Elastic{100.0, 0.2}, space), make_law(Elastic{100.0, 0.2}, space)}));
+        std::vector<SmallLaw>{Elastic{100.0, 0.2}, Elastic{100.0, 0.2}}));
     ContactPair pair{.name = "interface",
                      .slave = "upper_bottom",
                      .master = std::string("lower_top"),

@@ -96,8 +96,8 @@ Answer solve(const Variant& variant) {
   if (std::holds_alternative<Semismooth>(variant.enforcement))
     fields.push_back(multiplier_nodes(mesh, "interface", slave));
   const DofLayout layout(mesh, {}, fields);
-  const std::vector<BulkLawPtr> laws = {make_law(Elastic{300.0 * stress, 0.2}, space),
-                                        make_law(Elastic{100.0 * stress, 0.4}, space)};
+  const std::vector<SmallLaw> laws = {Elastic{300.0 * stress, 0.2},
+                                        Elastic{100.0 * stress, 0.4}};
 
   std::vector<std::unique_ptr<Form>> forms;
   forms.push_back(std::make_unique<BulkForm>(layout, space, laws));

@@ -90,7 +90,7 @@ TEST_CASE("a quadratic displacement under its body force is found exactly, with 
     const BodyLoad load{"block", {problem.force[0], problem.force[1], std::nullopt}};
     BodyLoad body = load;
     if (space == Space::Solid) body.force[2] = problem.force[2];
-    BulkForm solid(layout, space, {make_law(soft, space)}, {body});
+    BulkForm solid(layout, space, {soft}, {body});
     LoadForm loads(layout, space, {}, {body}, {});
     const Eigen::VectorXd u = solve_linear(layout, solid, loads, on_boundary(mesh, problem.displacement));
     const Eigen::VectorXd exact = nodal_values(mesh, problem.displacement);
@@ -130,7 +130,7 @@ TEST_CASE("work of a body force on nodes and bubbles is twice the energy, and fo
     const Mesh mesh = rough_mesh(type);
     const DofLayout layout(mesh, {}, {});
     const BodyLoad load{"block", {Expression("(1+t)*exp(2*x)", {}), Expression("(1+t)*y", {}), std::nullopt}};
-    BulkForm solid(layout, space, {make_law(soft, space)}, {load});
+    BulkForm solid(layout, space, {soft}, {load});
     LoadForm loads(layout, space, {}, {load}, {});
     const auto fixed = on_boundary(mesh, [](auto) { return std::array<double, 3>{}; });
     const Eigen::VectorXd u = solve_linear(layout, solid, loads, fixed);
@@ -156,7 +156,7 @@ TEST_CASE("plane stress has no bubbles, and other elements have none") {
         Case{ElementType::Quadrilateral9, Space::PlaneStrain}}) {
     const Mesh mesh = rough_mesh(type);
     const DofLayout layout(mesh, {}, {});
-    BulkForm solid(layout, space, {make_law(soft, space)}, {load});
+    BulkForm solid(layout, space, {soft}, {load});
     CHECK(solid.loaded_bubbles(state_of(Eigen::VectorXd::Zero(layout.num_global()))).forces.empty());
   }
 }

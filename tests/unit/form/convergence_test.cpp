@@ -50,7 +50,7 @@ double cylinder_error(ElementType type, Space space, double nu, int n) {
   const ThickCylinder solution(lame_constants(material, space));
   const Mesh mesh = cylinder_mesh(type, space, n);
   const DofLayout layout(mesh, {}, {});
-  BulkForm solid(layout, space, {make_law(material, space)});
+  BulkForm solid(layout, space, {material});
   LoadForm loads(layout, space, {{"x-", {}, pressure}}, {}, {});
   const Field exact = [&](std::span<const double> x) -> std::array<double, 3> {
     if (space == Space::Axisymmetric) return {solution.radial(x[0]), 0, 0};
@@ -174,7 +174,7 @@ Errors isochoric_errors(const Mesh& mesh, Space space, double nu) {
   BodyLoad force{"block", {}};
   for (int i = 0; i < mesh.dim; ++i)
     force.force[i] = Expression(problem.force[i], {});
-  BulkForm solid(layout, space, {make_law(material, space)}, {force});
+  BulkForm solid(layout, space, {material}, {force});
   std::map<Eigen::Index, double> prescribed;
   for (const auto& [group, nodes] : mesh.node_groups)
     if (mesh.surfaces.contains(group) && (space == Space::PlaneStrain || group != "x+"))
@@ -266,7 +266,7 @@ double cook_rise(ElementType type, int n) {
     return {48 * p[0], 44 * p[0] + p[1] * (44 - 28 * p[0]), 0};
   });
   const DofLayout layout(mesh, {}, {});
-  BulkForm solid(layout, space, {make_law({240.565, 0.4999}, space)});
+  BulkForm solid(layout, space, {Elastic{240.565, 0.4999}});
   LoadForm loads(layout, space, {{"x+", {std::nullopt, 100.0 / 16, std::nullopt}, {}}}, {}, {});
   std::map<Eigen::Index, double> prescribed;
   const Field none = [](auto) { return std::array<double, 3>{}; };

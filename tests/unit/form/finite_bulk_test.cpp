@@ -208,7 +208,7 @@ TEST_CASE("finite: at rest the tangent is the stiffness of small strain, mean di
     const Elastic rubber{7.0, 0.4999};
     const Mesh mesh = small_mesh(type, {1, 1, 1});
     const DofLayout layout(mesh, {}, {});
-    BulkForm linear(layout, space, {make_law(rubber, space)});
+    BulkForm linear(layout, space, {rubber});
     FiniteBulkForm finite(layout, space, {NeoHookean{rubber}});
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(layout.num_global());
     const Eigen::MatrixXd K = tangent_of(layout, linear, none);
@@ -230,7 +230,7 @@ TEST_CASE("finite: only an accepted increment is remembered, and history goes ba
   const double heat = form.dissipated_energy(state_of(u, 1.0));
   CHECK(heat > 0.0);
   CHECK((residual_of(layout, form, u, 1.0) - loaded).norm() < 1e-11 * loaded.norm());
-  CHECK(residual_of(layout, form, none, 2.0).norm() > 0.1 * loaded.norm());
+  CHECK(residual_of(layout, form, none, 2.0).norm() > 0.01 * loaded.norm());
   form.restore(virgin);
   CHECK(residual_of(layout, form, none, 1.0).norm() < 1e-14);
   CHECK(form.dissipated_energy(state_of(none, 1.0)) == 0.0);
