@@ -51,7 +51,9 @@ class FacetCloud {
   std::span<const double> part(const std::vector<double>& values, std::int32_t f) const {
     return std::span(values).subspan(offsets_[f], offsets_[f + 1] - offsets_[f]);
   }
-  void append(ElementType type, std::int32_t body, std::span<const double> positions, std::span<const double> moved);
+  void append(ElementType type, std::int32_t body, std::span<const double> positions, std::span<const double> moved,
+              std::span<const double> origins);
+  std::array<double, 3> value_at(std::span<const double> values, std::int32_t f, std::span<const double> xi) const;
   void plant();
 
   int dim_;

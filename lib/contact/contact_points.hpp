@@ -85,9 +85,12 @@ class ContactPoints {
   void follow(const State& state);
   /// Makes the iterate of the last follow() the state from which the next increment starts; and takes up an earlier
   /// such state again.
-  void accept() { accepted_displacement_ = displacement_; }
+  void accept();
   const std::vector<double>& accepted_displacement() const { return accepted_displacement_; }
   void restore(std::vector<double> accepted_displacement);
+  /// Where the surface may meet itself: has a point gone through the wall that was in front of it at the last accepted
+  /// state, and so far behind it that it has lost sight of it (own_body.hpp)? On this rank, as of the last follow().
+  bool has_gone_through() const;
   /// As of the last follow().
   const PointNow& now(std::size_t i) const { return now_[i]; }
   /// A master facet at ξ.
@@ -103,6 +106,12 @@ class ContactPoints {
   struct Scratch {
     std::array<double, 3> slave_normal;
     std::int32_t guess; // master facet that is likely to be the nearest, or none
+  };
+  /// A place on a master facet.
+  struct FacetPlace {
+    std::int64_t facet = none_in_front; // its name
+    std::array<double, 2> xi{};
+    static constexpr std::int64_t none_in_front = -1;
   };
   void gather_master(const std::string& surface);
   void measure_thickness();
@@ -137,8 +146,10 @@ class ContactPoints {
   std::vector<Scratch> scratch_; // per point, during construction
   std::unique_ptr<MasterSurface> master_;
   std::array<double, 3> shift_{};
-  std::vector<std::int32_t> found_;  // scratch
-  std::vector<std::int32_t> welded_; // of bodies, where the surface may meet itself
+  std::vector<std::int32_t> found_; // scratch
+  std::vector<std::int32_t>
+      welded_; // of bodies, where the surface may meet itself; and what was in front of its points
+  std::vector<FacetPlace> in_front_; // at the last accepted state; empty when that is not known
   std::size_t num_values_ = 0;       // of values_ that are not the averages' over the master
   // Finite kinematics:
   std::vector<PointNow> now_;

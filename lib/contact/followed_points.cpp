@@ -74,9 +74,29 @@ void ContactPoints::gather_where_needed() {
     point.master = ContactPoint::none; // numbers of the facets gathered before
 }
 
+void ContactPoints::accept() {
+  accepted_displacement_ = displacement_;
+  if (welded_.empty()) return;
+  in_front_.assign(points_.size(), {});
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (points_[i].master >= 0) in_front_[i] = {master_->name(points_[i].master), now_[i].xi};
+}
+
+bool ContactPoints::has_gone_through() const {
+  for (std::size_t i = 0; i < in_front_.size(); ++i) {
+    const auto facet = in_front_[i].facet < 0 ? -1 : master_->find(in_front_[i].facet);
+    if (facet < 0) continue;
+    const auto wall = master_at(facet, in_front_[i].xi);
+    const double height = (now_[i].slave.place - wall.place).dot(vector(normal_of(wall)));
+    if (height <= -points_[i].thickness) return true;
+  }
+  return false;
+}
+
 void ContactPoints::restore(std::vector<double> accepted_displacement) {
   accepted_displacement_ = std::move(accepted_displacement);
   accepted_is_gathered_ = false;
+  in_front_.clear();
   followed_time_.reset();
 }
 

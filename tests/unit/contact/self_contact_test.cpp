@@ -1,6 +1,7 @@
 // A surface that meets itself: who is a partner on strips bent onto themselves, each contact counted once, tangent,
 // balance, the same on any number of ranks.
 #include "contact/contact_form.hpp"
+#include "fold.hpp"
 #include "form/problem.hpp"
 #include "strip.hpp"
 #include "two_blocks.hpp"
@@ -8,8 +9,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <doctest/doctest.h>
-#include <functional>
-#include <numbers>
 
 using namespace amontons;
 using namespace amontons::test;
@@ -18,25 +17,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-constexpr double pi = std::numbers::pi;
-
-/// Place of the strip's material point at `s` along it and `eta` above its bottom.
-using Fold = std::function<Vector2d(double s, double eta)>;
-
-/// Two straight legs, the upper one turned over by a half circle, their top faces `gap` apart. The inner face of the
-/// bend has a radius of its own, so that nothing but the legs meets.
-Fold hairpin(double length, double thickness, double gap) {
-  const double bend = 0.8, leg = 0.5 * (length - bend), radius = bend / pi, bulge = 0.5 * gap;
-  return [=](double s, double eta) {
-    const double up = thickness - eta; // below the top face
-    if (s <= leg) return Vector2d(s, -bulge - up);
-    if (s >= leg + bend) return Vector2d(length - s, bulge + up);
-    // A drop: from the lower leg around and back, of width 2 radius, pinched at its ends.
-    const double angle = pi * (s - leg) / bend, wide = radius + up;
-    const double middle = -std::cos(angle) * (bulge + (wide - up) * std::pow(std::sin(angle), 2) + up);
-    return Vector2d(leg + wide * std::sin(angle), middle);
-  };
-}
 
 /// Three straight layers, each `gap` above the one before it, joined by sharp bends.
 Fold zigzag(double length, double thickness, double gap) {
@@ -233,8 +213,7 @@ TEST_CASE("self contact: each contact counts once, whichever side finds it, and 
     fixture.begin(hairpin(4.0, 0.1, gap));
     const auto state = fixture.problem->state_at(fixture.u);
     // The legs, both of which carry points; the bend adds some of its own.
-    const double width = dim == 3 ? 0.3 : 1.0, least = 1.6 * width,
-                 h = dim == 3 ? std::sqrt(0.2 * 0.15) : 0.2;
+    const double width = dim == 3 ? 0.3 : 1.0, least = 1.6 * width, h = dim == 3 ? std::sqrt(0.2 * 0.15) : 0.2;
     const auto totals = fixture.form->totals(state);
     CHECK(totals.area > least);
     CHECK(totals.area < 1.1 * least);
