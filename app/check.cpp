@@ -105,8 +105,11 @@ void describe_effects(std::ostream& out, const Deck& deck) {
   out << "  on       " << join_names(on) << "\n  off      " << join_names(off) << "\n";
   for (const auto& contact : deck.contact) {
     const auto* master = std::get_if<Located<std::string>>(&contact.master.value);
-    out << "  contact  " << contact.name.value << ": " << contact.slave.value << " on "
-        << (master ? master->value : "a rigid shape") << ", " << enforce_name(contact.enforce) << "\n";
+    out << "  contact  " << contact.name.value << ": " << contact.slave.value
+        << (meets_itself(contact) ? " with themselves"
+            : master              ? " on " + master->value
+                                  : " on a rigid shape")
+        << ", " << enforce_name(contact.enforce) << "\n";
   }
   if (!deck.contact.empty()) out << "  enforce  " << enforce_advice() << "\n";
 }

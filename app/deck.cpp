@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "deck/rule.hpp"
 #include "deck_checks.hpp"
+#include "mesh/mesh.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -111,8 +112,7 @@ TaggedRule<MasterDeck> master_rule() {
   rule.bare(located(text(group_meaning)))
       .tag("plane", plane, "Rigid half-space.")
       .tag("sphere", sphere, "Rigid ball; a disc in plane strain and plane stress.")
-      .tag("cylinder", cylinder, "Rigid cylinder of infinite length; a disc in plane strain and plane stress.")
-      .not_yet("self", "Split the surface into two physical groups and declare them as slave and master.");
+      .tag("cylinder", cylinder, "Rigid cylinder of infinite length; a disc in plane strain and plane stress.");
   return rule;
 }
 
@@ -162,6 +162,48 @@ TaggedRule<EnforceDeck> enforce_rule() {
   return rule;
 }
 
+/// A surface that meets itself: slave and master in one.
+void meet_itself(ContactDeck& contact, ContactSides sides, const Located<std::string>& surface) {
+  contact.sides = sides;
+  contact.slave = surface;
+  contact.master = {MasterDeck(surface), surface.place};
+}
+
+/// Takes `self` and `between` for slave and master, of which then neither may stand there.
+void settle_sides(const DeckNode& node, ContactDeck& contact, Reading& reading) {
+  const DeckNode *self = node.find("self"), *between = node.find("between");
+  const auto* itself = self ? self : between;
+  for (const char* key : {"slave", "master"}) {
+    const auto* other = node.find(key);
+    if (!itself && !other)
+      reading.fail(node.place, std::string("the key '") + key + "' is missing in " + node.path +
+                                   ": a pair has a slave and a master. Add it, or write `self: SURFACE` for a surface "
+                                   "that meets itself or `between: all` for all surfaces.");
+    if (itself && other)
+      reading.fail(other->place, node.path + "." + key + ": with " + (self ? "self" : "between") +
+                                     " the surfaces are settled. Remove this key.");
+  }
+  if (self && between)
+    reading.fail(between->place, node.path + ".between: all surfaces include that of self. Remove one of the two.");
+  if (!itself) return;
+  if (self)
+    meet_itself(contact, ContactSides::Itself, contact.slave);
+  else
+    meet_itself(contact, ContactSides::All, {exterior_name, between->place});
+  const bool both_passes =
+      std::holds_alternative<PenaltyDeck>(contact.enforce) || std::holds_alternative<UzawaDeck>(contact.enforce);
+  if (!both_passes)
+    reading.fail(node.find("enforce") ? node.find("enforce")->place : node.place,
+                 node.path +
+                     ".enforce: a surface that meets itself is slave on both sides of every contact, and of two "
+                     "unknown multipliers (or bounds) there only the sum is determined. Use "
+                     "`enforce: {penalty: {}}` or `enforce: {uzawa: {}}`.");
+  if (std::holds_alternative<SegmentIntegrationDeck>(contact.integration))
+    reading.fail(node.find("integration")->place,
+                 node.path + ".integration: which facets of a surface meet changes as it folds, so segments cannot be "
+                             "cut beforehand. Use `{facet: {order: 6}}`, or a higher order.");
+}
+
 ObjectRule<ContactDeck> contact_rule() {
   TaggedRule<decltype(ContactDeck::projection)> projection;
   projection.tag("closest_point", ObjectRule<ClosestPointDeck>(), "The closest point of the master surface.")
@@ -184,11 +226,20 @@ ObjectRule<ContactDeck> contact_rule() {
            "where the slave is the coarser side. Costs twice the points in 2D, five times in 3D, a dozen with cells of "
            "order 2; Newton's iterations stay the same. Needs a meshed master.",
            "M. A. Puso, Int. J. Numer. Meth. Engng. 59 (2004) 315-336.");
+  WordRule<ContactSides> between;
+  between.word("all", ContactSides::All, "All exterior surfaces of all bodies.");
   ObjectRule<ContactDeck> rule;
   rule.required("name", &ContactDeck::name, identifier("name of the pair in the results"), "Names the pair in results.")
-      .required("slave", &ContactDeck::slave, text(group_meaning),
+      .optional("slave", &ContactDeck::slave, text(group_meaning),
                 "The surface that carries quadrature points and multipliers; take the finer or the softer one.")
-      .required("master", &ContactDeck::master, master_rule(), "The surface projected onto, or a rigid shape.")
+      .optional("master", &ContactDeck::master, master_rule(), "The surface projected onto, or a rigid shape.")
+      .optional("self", &ContactDeck::slave, text(group_meaning),
+                "Instead of slave and master: a surface that meets itself. Take the whole skin of a thin body, both "
+                "sides of its wall. For penalty and uzawa, with kinematics: finite.",
+                "R. A. Sauer, L. De Lorenzis, Comput. Methods Appl. Mech. Engrg. 253 (2013) 369-392.")
+      .optional("between", &ContactDeck::sides, between,
+                "Instead of slave and master: all bodies with each other and with themselves, no pairing needed. "
+                "Contacts are searched for in every iteration. For penalty and uzawa.")
       .optional("enforce", &ContactDeck::enforce, enforce_rule(),
                 "How the contact conditions are enforced. " + enforce_advice())
       .optional("projection", &ContactDeck::projection, projection, "How a slave point finds its master point.")
@@ -202,6 +253,7 @@ ObjectRule<ContactDeck> contact_rule() {
       .optional("friction_factor", &ContactDeck::friction_factor, expression("1"),
                 "Multiplies the friction coefficient at each point (in its reference position) and time; >= 0. Not for "
                 "cohesions and shear limits. When absent: 1.")
+      .then(settle_sides)
       .check([](const DeckNode& node, const ContactDeck& value, Reading& reading) {
         if (std::holds_alternative<SegmentIntegrationDeck>(value.integration) &&
             !std::holds_alternative<Located<std::string>>(value.master.value))

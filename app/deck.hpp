@@ -94,9 +94,13 @@ struct SegmentIntegrationDeck {
   int order = 4; // polynomial degree integrated exactly on each piece of a slave facet
 };
 
+/// Which surfaces meet: a slave and a master, one surface with itself, or all surfaces with each other and themselves.
+enum class ContactSides { SlaveAndMaster, Itself, All };
+
 struct ContactDeck {
   Located<std::string> name;
-  Located<std::string> slave;
+  ContactSides sides = ContactSides::SlaveAndMaster;
+  Located<std::string> slave; // otherwise the surface that meets itself; it is the master, too
   Located<MasterDeck> master;
   EnforceDeck enforce;
   std::variant<ClosestPointDeck, SlaveNormalDeck> projection;
@@ -182,6 +186,9 @@ struct Deck {
   /// 2 or 3.
   int dim() const { return space_dim(space); }
 };
+
+/// Does the pair's surface meet itself?
+inline bool meets_itself(const ContactDeck& contact) { return contact.sides != ContactSides::SlaveAndMaster; }
 
 /// Does any increment of the run need the comparison with its halves?
 bool measures_path(const Deck& deck);

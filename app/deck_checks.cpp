@@ -288,10 +288,12 @@ void check_contact(const Check& check) {
     std::visit(ShapeCheck{check, i, shape_tags[contact.master.value.index()]}, contact.master.value);
     const auto* master = std::get_if<Located<std::string>>(&contact.master.value);
     if (!master) continue;
-    if (master->value == contact.slave.value) {
+    if (contact.sides == ContactSides::Itself && deck.kinematics == Kinematics::Small)
+      reading.fail(contact.slave.place, path + ".self: a surface comes to meet itself by large rotations, which "
+                                               "kinematics: small leaves out. Set kinematics: finite.");
+    if (!meets_itself(contact) && master->value == contact.slave.value) {
       reading.fail(contact.master.place, path + ": slave and master are the same surface '" + master->value +
-                                             "', and self contact is not in this release. Split the surface into two " +
-                                             "physical groups.");
+                                             "'. Write `self: " + master->value + "` instead of both.");
       continue;
     }
     const auto [pair, new_pair] = pairs.try_emplace({contact.slave.value, master->value}, i);

@@ -258,6 +258,9 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path, 
   }
   const auto& deck = scene->deck;
   const auto& mesh = scene->mesh;
+  if (std::any_of(deck.contact.begin(), deck.contact.end(),
+                  [](const auto& contact) { return contact.sides == ContactSides::All; }))
+    name_exterior(scene->mesh);
   const Phase phase("set up");
   check_friction_factors(deck, mesh);
   auto conditions = make_conditions(deck);

@@ -142,8 +142,10 @@ std::set<FacetKey> facets_of_group(const RawMesh& raw, const std::string& name) 
 std::vector<Located<std::string>> check_contact(Fit& fit) {
   std::vector<Located<std::string>> surfaces;
   for (const auto& contact : fit.deck.contact) {
+    if (contact.sides == ContactSides::All) continue;
     const bool slave_exists = fit.require_group(contact.slave, fit.raw.dim - 1);
     if (slave_exists) surfaces.push_back(contact.slave);
+    if (meets_itself(contact)) continue;
     const auto* master = std::get_if<Located<std::string>>(&contact.master.value);
     if (!master || !fit.require_group(*master, fit.raw.dim - 1)) continue;
     surfaces.push_back(*master);
@@ -256,7 +258,7 @@ MeshSource mesh_source(const Deck& deck, const FreeMeshing& meshing) {
 ContactHints contact_hints(const Deck& deck) {
   ContactHints hints;
   for (const auto& contact : deck.contact)
-    if (const auto* master = std::get_if<Located<std::string>>(&contact.master.value))
+    if (const auto* master = std::get_if<Located<std::string>>(&contact.master.value); master && !meets_itself(contact))
       hints.push_back({contact.slave.value, master->value});
   return hints;
 }

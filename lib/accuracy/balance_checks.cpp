@@ -3,43 +3,24 @@
 #include "accuracy/facet_cloud.hpp"
 #include "math/reference_element.hpp"
 #include "math/tensor.hpp"
+#include "mesh/welded_bodies.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace amontons::accuracy {
 
 namespace {
 
-/// For each body the first body of the set that it forms with those it shares nodes with (welded, not in contact).
-/// `body_of_node`: receives a body of each local node. Collective.
-std::vector<std::size_t> welded_bodies(const Mesh& mesh, std::vector<std::int32_t>& body_of_node) {
-  const std::size_t count = mesh.bodies.size();
-  std::vector<std::uint8_t> shares(count * count, 0);
-  body_of_node.assign(mesh.num_local(), -1);
+/// A body of each local node; of nodes that several have, any: they are welded.
+std::vector<std::int32_t> bodies_of_nodes(const Mesh& mesh) {
+  std::vector<std::int32_t> body(mesh.num_local(), -1);
   for (const CellBlock& block : mesh.blocks)
-    for (const std::int32_t node : block.nodes) {
-      std::int32_t& known = body_of_node[node];
-      if (known < 0) known = block.body;
-      shares[known * count + block.body] = shares[block.body * count + known] = 1;
-    }
-  MPI_Allreduce(MPI_IN_PLACE, shares.data(), static_cast<int>(shares.size()), MPI_UINT8_T, MPI_MAX, mesh.comm);
-  std::vector<std::size_t> first(count);
-  std::iota(first.begin(), first.end(), 0);
-  // Spread the smallest number until nothing changes; chains of bodies are short.
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t a = 0; a < count; ++a)
-      for (std::size_t b = 0; b < count; ++b)
-        if (shares[a * count + b] != 0 && first[b] < first[a]) {
-          first[a] = first[b];
-          changed = true;
-        }
-  }
-  return first;
+    for (const std::int32_t node : block.nodes)
+      body[node] = block.body;
+  return body;
 }
 
 /// Sizes of the force and of the moment in a wrench. Around the axis of revolution radial forces and moments cancel by
@@ -85,8 +66,7 @@ void add_wrench(std::array<double, 6>& sum, const std::array<double, 3>& x, cons
 BalanceChecks check_balance(const CertificateInput& input, const std::array<double, 3>& pivot, double size,
                             const ClaimedForces& forces) {
   const Mesh& mesh = input.mesh;
-  std::vector<std::int32_t> body_of_node;
-  const std::vector<std::size_t> first = welded_bodies(mesh, body_of_node);
+  const std::vector<std::int32_t> body_of_node = bodies_of_nodes(mesh), first = welded_bodies(mesh);
   // Rows: the whole scene, then sets of bodies under their first body's number; behind them the force scale.
   const std::size_t rows = mesh.bodies.size() + 1;
   std::vector<std::array<double, 6>> sums(rows + 1, std::array<double, 6>{});

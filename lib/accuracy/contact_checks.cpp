@@ -2,6 +2,7 @@
 #include "accuracy/checks.hpp"
 #include "accuracy/gap_search.hpp"
 #include "math/reference_element.hpp"
+#include "mesh/welded_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +65,8 @@ std::vector<MasterHit> find_on_surface(const CertificateInput& input, const Plac
   const FacetSet& master = input.mesh.surfaces.at(std::get<std::string>(names.master));
   const auto& [start, displacement] = placement;
   const double reach = reach_of(input.mesh, displacement, master, points, start);
-  return find_on_master(input.mesh, displacement, master, points, reach, start);
+  const auto welded = welded_bodies(input.mesh);
+  return find_on_master(input.mesh, displacement, master, points, reach, start, opposite_of(names, welded));
 }
 
 /// The gap that a claimed pressure is held against: where there is no master the distance to it, at least a facet.

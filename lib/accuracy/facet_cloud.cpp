@@ -51,7 +51,8 @@ FacetCloud FacetCloud::moving(const Mesh& mesh, std::span<const double> start, s
   FacetCloud cloud(mesh.dim);
   for (std::int32_t f = 0; f < facets.size(); ++f)
     cloud.append(facets.types[f], facets.bodies[f], positions_of(mesh, start, facets.facet(f), configuration),
-                 nodal_values(mesh, displacement, facets.facet(f)));
+                 nodal_values(mesh, displacement, facets.facet(f)),
+                 nodal_values(mesh, mesh.coordinates, facets.facet(f)));
   cloud.plant();
   return cloud;
 }
@@ -66,7 +67,7 @@ FacetCloud FacetCloud::gathered(MPI_Comm comm, const Box& wanted) const {
       auto& message = outgoing[rank];
       message.push_back(static_cast<double>(types_[f]));
       message.push_back(bodies_[f]);
-      for (const auto values : {positions(f), part(displacements_, f)})
+      for (const auto values : {positions(f), part(displacements_, f), part(origins_, f)})
         message.insert(message.end(), values.begin(), values.end());
     }
   }
@@ -75,19 +76,20 @@ FacetCloud FacetCloud::gathered(MPI_Comm comm, const Box& wanted) const {
   for (std::size_t at = 0; at < arrived.size();) {
     const auto type = static_cast<ElementType>(arrived[at]);
     const std::size_t count = std::size_t(num_nodes(type)) * dim_;
-    const std::span<const double> values = std::span(arrived).subspan(at + 2, 2 * count);
-    cloud.append(type, static_cast<std::int32_t>(arrived[at + 1]), values.first(count), values.last(count));
-    at += 2 + 2 * count;
+    const std::span<const double> values = std::span(arrived).subspan(at + 2, 3 * count);
+    cloud.append(type, static_cast<std::int32_t>(arrived[at + 1]), values.first(count), values.subspan(count, count),
+                 values.last(count));
+    at += 2 + 3 * count;
   }
   cloud.plant();
   return cloud;
 }
 
-std::array<double, 3> FacetCloud::displacement_at(std::int32_t f, std::span<const double> xi) const {
+std::array<double, 3> FacetCloud::value_at(std::span<const double> values, std::int32_t f,
+                                           std::span<const double> xi) const {
   std::array<double, 9> shape;
   const int count = num_nodes(types_[f]);
   shape_values(types_[f], xi.first(element_dim(types_[f])), std::span(shape).first(count));
-  const std::span<const double> values = part(displacements_, f);
   std::array<double, 3> result{};
   for (int a = 0; a < count; ++a)
     for (int c = 0; c < dim_; ++c)
@@ -95,12 +97,21 @@ std::array<double, 3> FacetCloud::displacement_at(std::int32_t f, std::span<cons
   return result;
 }
 
+std::array<double, 3> FacetCloud::displacement_at(std::int32_t f, std::span<const double> xi) const {
+  return value_at(part(displacements_, f), f, xi);
+}
+
+std::array<double, 3> FacetCloud::origin_at(std::int32_t f, std::span<const double> xi) const {
+  return value_at(part(origins_, f), f, xi);
+}
+
 void FacetCloud::append(ElementType type, std::int32_t body, std::span<const double> positions,
-                        std::span<const double> moved) {
+                        std::span<const double> moved, std::span<const double> origins) {
   types_.push_back(type);
   bodies_.push_back(body);
   positions_.insert(positions_.end(), positions.begin(), positions.end());
   displacements_.insert(displacements_.end(), moved.begin(), moved.end());
+  origins_.insert(origins_.end(), origins.begin(), origins.end());
   offsets_.push_back(positions_.size());
 }
 

@@ -42,6 +42,8 @@ class FacetCloud {
   std::span<const double> positions(std::int32_t f) const { return part(positions_, f); }
   /// Displacement at ξ, three components.
   std::array<double, 3> displacement_at(std::int32_t f, std::span<const double> xi) const;
+  /// Reference place of ξ, three components.
+  std::array<double, 3> origin_at(std::int32_t f, std::span<const double> xi) const;
   double facet_size(std::int32_t f) const { return amontons::facet_size(type(f), positions(f)); }
   const BoxTree& tree() const { return tree_; }
 
@@ -49,14 +51,16 @@ class FacetCloud {
   std::span<const double> part(const std::vector<double>& values, std::int32_t f) const {
     return std::span(values).subspan(offsets_[f], offsets_[f + 1] - offsets_[f]);
   }
-  void append(ElementType type, std::int32_t body, std::span<const double> positions, std::span<const double> moved);
+  void append(ElementType type, std::int32_t body, std::span<const double> positions, std::span<const double> moved,
+              std::span<const double> origins);
+  std::array<double, 3> value_at(std::span<const double> values, std::int32_t f, std::span<const double> xi) const;
   void plant();
 
   int dim_;
   std::vector<ElementType> types_;
   std::vector<std::int32_t> bodies_;
   std::vector<std::size_t> offsets_ = {0};
-  std::vector<double> positions_, displacements_;
+  std::vector<double> positions_, displacements_, origins_; // of nodes: at the start, from there, in the reference
   std::vector<Box> boxes_;
   BoxTree tree_;
 };

@@ -2,6 +2,7 @@
 // anew, and against the motion of the surfaces, searched anew.
 #include "accuracy/checks.hpp"
 #include "accuracy/gap_search.hpp"
+#include "mesh/welded_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -119,7 +120,9 @@ std::vector<Vector> moved_over_master(const CertificateInput& input, std::size_t
   const FacetSet& master = mesh.surfaces.at(std::get<std::string>(input.pairs[pair].master));
   const auto reaching = finite ? input.increment : input.displacement;
   const double reach = reach_of(mesh, reaching, master, points_with(reaching), start);
-  for (const MasterHit& hit : find_on_master(mesh, input.increment, master, points, reach, start)) {
+  const auto welded = welded_bodies(mesh);
+  const auto opposite = opposite_of(input.pairs[pair], welded);
+  for (const MasterHit& hit : find_on_master(mesh, input.increment, master, points, reach, start, opposite)) {
     moved.push_back(hit.jump);
     for (std::size_t c = 0; finite && c < 3; ++c)
       moved.back()[c] += hit.away[c];

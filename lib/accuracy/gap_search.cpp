@@ -19,8 +19,11 @@ constexpr double tie = 1e-9, rim = 1e-6;
 
 Vector vector(const std::array<double, 3>& v) { return Vector(v.data()); }
 
+/// A penetration is less than this part of the way through the material that it had in the reference configuration.
+constexpr double shortened = 0.25;
+
 /// The facets that share the closest point among those facing the slave point, and the nearest one that looks the same
-/// way as the slave point does.
+/// way as the slave point does (of another surface) or is the other side of its own wall (of the same surface).
 struct Nearest {
   std::vector<Projection> ties;
   std::vector<std::int32_t> facets;
@@ -29,14 +32,28 @@ struct Nearest {
   static constexpr double no_limit = 1e300;
 };
 
+/// See Opposite.
+bool is_own_wall(const FacetCloud& master, std::int32_t f, const SlavePoint& point, const Projection& projection,
+                 const SameSurface& same) {
+  if (same.welded[point.body] != same.welded[master.body(f)]) return false;
+  if (vector(projection.normal).dot(vector(point.place) - vector(projection.point)) >= 0.0) return false;
+  const Vector way = vector(master.origin_at(f, projection.xi)) - vector(point.origin);
+  return way.dot(vector(point.origin_normal)) < -tie * way.norm() && projection.distance > shortened * way.norm();
+}
+
 void look_at(const FacetCloud& master, std::int32_t f, const SlavePoint& point, std::span<const double> x,
-             Nearest& nearest) {
+             const Opposite& opposite, Nearest& nearest) {
   if (box_distance(master.box(f), x) > nearest.distance * (1.0 + tie) + tie * point.size) return;
   const Projection projection = closest_point(master.type(f), master.positions(f), x);
   if (!projection.found) return;
   const double cosine = vector(projection.normal).dot(vector(point.normal));
-  if (cosine > facing) nearest.back = std::min(nearest.back, projection.distance);
+  const auto* same = std::get_if<SameSurface>(&opposite);
+  if (!same && cosine > facing) nearest.back = std::min(nearest.back, projection.distance);
   if (cosine > -facing) return;
+  if (same && is_own_wall(master, f, point, projection, *same)) {
+    nearest.back = std::min(nearest.back, projection.distance);
+    return;
+  }
   if (projection.distance < nearest.distance - tie * point.size) {
     nearest.ties.clear();
     nearest.facets.clear();
@@ -48,7 +65,7 @@ void look_at(const FacetCloud& master, std::int32_t f, const SlavePoint& point, 
 }
 
 Nearest nearest_facets(const FacetCloud& master, const SlavePoint& point, std::span<const double> x, double reach,
-                       std::vector<std::int32_t>& scratch) {
+                       const Opposite& opposite, std::vector<std::int32_t>& scratch) {
   Nearest nearest;
   for (double radius = std::min(0.5 * point.size, reach);; radius = std::min(2.0 * radius, reach)) {
     Box box;
@@ -57,7 +74,7 @@ Nearest nearest_facets(const FacetCloud& master, const SlavePoint& point, std::s
     master.tree().query(box, scratch);
     nearest = {};
     for (const std::int32_t f : scratch)
-      look_at(master, f, point, x, nearest);
+      look_at(master, f, point, x, opposite, nearest);
     // A facet outside of the box is farther than the radius.
     if (nearest.distance <= radius * (1.0 - 2.0 * tie) || radius >= reach) return nearest;
   }
@@ -113,13 +130,18 @@ MasterHit hit_of(const FacetCloud& master, const Nearest& nearest, const SlavePo
 
 } // namespace
 
+Opposite opposite_of(const ContactPairNames& pair, std::span<const std::int32_t> welded) {
+  if (std::get<std::string>(pair.master) != pair.slave) return OtherSurface{};
+  return SameSurface{welded};
+}
+
 SlavePoint slave_point(const Mesh& mesh, std::span<const double> displacement, const FacetSet& slave, std::int32_t f,
                        std::span<const double> xi, std::span<const double> start) {
   const ElementType type = slave.types[f];
   const auto nodes = slave.facet(f);
   const auto positions =
       positions_of(mesh, start, nodes, start.empty() ? Configuration::Reference : Configuration::Current);
-  const auto moved = nodal_values(mesh, displacement, nodes);
+  const auto moved = nodal_values(mesh, displacement, nodes), origins = nodal_values(mesh, mesh.coordinates, nodes);
   std::array<double, 9> shape;
   const auto at = xi.first(element_dim(type));
   shape_values(type, at, std::span(shape).first(nodes.size()));
@@ -128,8 +150,11 @@ SlavePoint slave_point(const Mesh& mesh, std::span<const double> displacement, c
     for (int c = 0; c < mesh.dim; ++c) {
       point.place[c] += shape[a] * positions[a * mesh.dim + c];
       point.displacement[c] += shape[a] * moved[a * mesh.dim + c];
+      point.origin[c] += shape[a] * origins[a * mesh.dim + c];
     }
   facet_normal(type, positions, at, point.normal);
+  facet_normal(type, origins, at, point.origin_normal);
+  point.body = slave.bodies[f];
   point.size = facet_size(type, positions);
   return point;
 }
@@ -187,7 +212,8 @@ double distance_to_cone(const std::array<double, 3>& r, std::span<const std::arr
 }
 
 std::vector<MasterHit> find_on_master(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
-                                      std::span<const SlavePoint> points, double reach, std::span<const double> start) {
+                                      std::span<const SlavePoint> points, double reach, std::span<const double> start,
+                                      const Opposite& opposite) {
   Box wanted;
   for (const SlavePoint& point : points)
     wanted.include(std::span(point.place).first(mesh.dim));
@@ -197,7 +223,7 @@ std::vector<MasterHit> find_on_master(const Mesh& mesh, std::span<const double> 
   std::vector<std::int32_t> scratch;
   for (const SlavePoint& point : points) {
     const auto x = std::span(point.place).first(mesh.dim);
-    hits.push_back(hit_of(cloud, nearest_facets(cloud, point, x, reach, scratch), point));
+    hits.push_back(hit_of(cloud, nearest_facets(cloud, point, x, reach, opposite, scratch), point));
   }
   return hits;
 }

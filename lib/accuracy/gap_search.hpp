@@ -3,9 +3,11 @@
 #pragma once
 
 #include "accuracy/facet_cloud.hpp"
+#include "contact/contact_samples.hpp"
 
 #include <array>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace amontons::accuracy {
@@ -21,7 +23,21 @@ struct SlavePoint {
   std::array<double, 3> displacement{};
   std::array<double, 3> normal{};
   double size = 0.0;
+  std::int32_t body = -1;
+  std::array<double, 3> origin{}, origin_normal{}; // place and outward normal in the reference configuration
 };
+
+/// What a slave surface may find: another surface, or itself. Facets of itself (of the same body, or one welded to it,
+/// by mesh/welded_bodies.hpp) that are behind the point, that were behind it in the reference configuration, and to
+/// which the way has not become shorter by more than three quarters, are the other side of its own wall. That wall is
+/// no partner, nor is what lies behind it.
+struct OtherSurface {};
+struct SameSurface {
+  std::span<const std::int32_t> welded;
+};
+using Opposite = std::variant<OtherSurface, SameSurface>;
+/// Of a pair with a meshed master. `welded` outlives it.
+Opposite opposite_of(const ContactPairNames& pair, std::span<const std::int32_t> welded);
 
 /// What a slave point finds on the master. The gap is that of small kinematics,
 ///   g = n · (X_s − ρ(ξ)) + n · (u_s − u_m(ξ)),
@@ -48,7 +64,7 @@ double reach_of(const Mesh& mesh, std::span<const double> displacement, const Fa
 /// Searches the master for every point of this rank. A master facet farther than `reach` is not looked at. Collective.
 std::vector<MasterHit> find_on_master(const Mesh& mesh, std::span<const double> displacement, const FacetSet& master,
                                       std::span<const SlavePoint> points, double reach,
-                                      std::span<const double> start = {});
+                                      std::span<const double> start = {}, const Opposite& opposite = OtherSurface{});
 
 /// Distance of r from the cone of the combinations Σ a_i n_i, a_i >= 0, of unit vectors.
 double distance_to_cone(const std::array<double, 3>& r, std::span<const std::array<double, 3>> normals);

@@ -1,4 +1,5 @@
-// The look for contacts that nobody declared, or that went unseen: nodes of one body inside another, now.
+// The look for contacts that nobody declared, or that went unseen: nodes of one body inside another, now. In finite
+// kinematics also nodes of a body inside cells of the same body that they do not belong to: folded onto itself.
 #include "accuracy/checks.hpp"
 #include "accuracy/facet_cloud.hpp"
 #include "accuracy/inside_cell.hpp"
@@ -19,6 +20,8 @@ struct Probe {
   double node = -1.0; // global number
   double size = 0.0;  // of the largest facet around it
 };
+/// Facets nearer than this part of a facet are those that a node lies on.
+constexpr double touching = 1e-9;
 constexpr std::size_t probe_length = 6; // numbers that a probe travels as
 
 void pack(const Probe& probe, std::vector<double>& message) {
@@ -71,7 +74,10 @@ std::vector<Box> body_boxes(const CertificateInput& input) {
   return boxes;
 }
 
-/// The probes of all ranks that lie in the box of this rank's part of another body. Collective.
+/// May a body meet itself? In small kinematics displacements are too small to mean that.
+bool looks_into_own_body(const CertificateInput& input) { return input.kinematics == Kinematics::Finite; }
+
+/// The probes of all ranks that lie in the box of this rank's part of a body to look into. Collective.
 std::vector<Probe> foreign_probes(const CertificateInput& input, std::span<const Probe> mine) {
   const std::size_t bodies = input.mesh.bodies.size();
   const std::vector<Box> boxes = boxes_of_ranks(input.mesh.comm, body_boxes(input));
@@ -81,7 +87,8 @@ std::vector<Probe> foreign_probes(const CertificateInput& input, std::span<const
     here.include(std::span(probe.place).first(input.mesh.dim));
     for (std::size_t rank = 0; rank < outgoing.size(); ++rank)
       for (std::size_t body = 0; body < bodies; ++body)
-        if (std::int32_t(body) != probe.body && boxes[rank * bodies + body].meets(here)) {
+        if ((std::int32_t(body) != probe.body || looks_into_own_body(input)) &&
+            boxes[rank * bodies + body].meets(here)) {
           pack(probe, outgoing[rank]);
           break;
         }
@@ -120,7 +127,8 @@ std::vector<Intruder> find_intruders(const CertificateInput& input, std::span<co
         const Probe& probe = probes[i];
         // A node that the cell has too is where two bodies are welded together.
         const auto same = [&](std::int32_t node) { return double(mesh.global_node(node)) == probe.node; };
-        if (probe.body == block.body || std::any_of(nodes.begin(), nodes.end(), same)) continue;
+        if ((probe.body == block.body && !looks_into_own_body(input)) || std::any_of(nodes.begin(), nodes.end(), same))
+          continue;
         if (!is_inside(block.type, positions, std::span(probe.place).first(mesh.dim))) continue;
         if (known.emplace(i, block.body).second) intruders.push_back({probe, block.body});
       }
@@ -149,7 +157,10 @@ Depth depth_of(const Intruder& intruder, const FacetCloud& exterior, int dim, do
     for (const std::int32_t f : scratch) {
       if (exterior.body(f) != intruder.inside) continue;
       const Projection projection = closest_point(exterior.type(f), exterior.positions(f), x);
-      if (projection.found && projection.distance <= radius) near.emplace_back(projection.distance, f);
+      // Of its own body the facets that it lies on bound the outside from within.
+      const bool is_own =
+          intruder.inside == intruder.probe.body && projection.distance <= touching * intruder.probe.size;
+      if (projection.found && !is_own && projection.distance <= radius) near.emplace_back(projection.distance, f);
     }
     if (!near.empty() || radius >= limit) break;
   }
@@ -276,7 +287,7 @@ Worst check_overlap(const CertificateInput& input) {
   const std::vector<Probe> mine = local_probes(input);
   Worst worst;
   look_into_shapes(input, mine, worst);
-  if (bodies < 2) return over_ranks(mesh.comm, std::move(worst));
+  if (bodies < 2 && !looks_into_own_body(input)) return over_ranks(mesh.comm, std::move(worst));
 
   const std::vector<std::uint8_t> declared = declared_bodies(input);
   const auto offer = [&](const Intruder& intruder, const Depth& depth) {
@@ -285,7 +296,7 @@ Worst check_overlap(const CertificateInput& input) {
       const bool known = declared[probe.body * bodies + inside] != 0;
       return "body '" + mesh.bodies[probe.body] + "' inside body '" + mesh.bodies[inside] + "' at " +
              place_text(std::span(probe.place).first(mesh.dim)) + ", " + (known ? "a" : "no") +
-             " contact is declared between them";
+             " contact is declared " + (probe.body == inside ? "of it with itself" : "between them");
     });
   };
   const FacetCloud exterior = FacetCloud::local(mesh, input.displacement, mesh.exterior, Configuration::Current);

@@ -260,6 +260,8 @@ void ContactForm::gap_variation(const ContactPoint& point, const Group& group, s
 
 void ContactForm::add_residual(const State& state, Residual& residual) {
   evaluate(state);
+  if (points_.has_gone_through())
+    residual.fail("pair '" + pair_.name + "': a wall has gone through another one that was in front of it");
   const auto& points = points_.points();
   const int d = layout_.dim();
   std::vector<PetscInt> equations;

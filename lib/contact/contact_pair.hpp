@@ -79,6 +79,12 @@ struct ContactPair {
   bool holds_floating_body = false;
   std::vector<double> stiffness; // Young's modulus per body of the mesh
   std::optional<Friction> friction = std::nullopt;
+
+  /// Slave and master are the same surface: see own_body.hpp.
+  bool meets_itself() const {
+    const auto* surface = std::get_if<std::string>(&master);
+    return surface && *surface == slave;
+  }
 };
 
 } // namespace amontons

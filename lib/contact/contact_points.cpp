@@ -4,6 +4,7 @@
 #include "geometry/projection.hpp"
 #include "geometry/segment_quadrature.hpp"
 #include "math/reference_element.hpp"
+#include "mesh/welded_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,6 +49,7 @@ ContactPoints::ContactPoints(const DofLayout& layout, const ContactPair& pair)
   else
     place_by_rule(std::visit([](const auto& integration) { return integration.degree; }, pair.integration));
   if (std::holds_alternative<Penalty>(pair.enforcement)) find_mean_size();
+  if (pair.meets_itself()) measure_thickness();
   if (master_) {
     search();
     average_over_master();
@@ -83,6 +85,36 @@ void ContactPoints::gather_master(const std::string& surface) {
   master_ = std::make_unique<MasterSurface>(layout_, facets, boxes, reach);
   gathered_displacement_ = displacement_;
   accepted_is_gathered_ = true;
+}
+
+/// Of the body behind every point: see own_body.hpp. Collective.
+void ContactPoints::measure_thickness() {
+  welded_ = welded_bodies(mesh_);
+  const auto& facets = mesh_.exterior;
+  std::vector<Box> boxes(facets.size());
+  for (std::int32_t f = 0; f < facets.size(); ++f)
+    for (const auto node : facets.facet(f))
+      boxes[f].include(mesh_.position(node));
+  Box reach = slave_box(displacement_);
+  if (!reach.empty()) reach.inflate(pair_.search_distance);
+  if (mesh_.dim == 2) reach.low[2] = reach.high[2] = 0.0;
+  const MasterSurface exterior(layout_, facets, boxes, reach);
+  const auto d = static_cast<std::size_t>(mesh_.dim);
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    points_[i].thickness =
+        thickness_behind(exterior, std::span(points_[i].place).first(d), std::span(scratch_[i].slave_normal).first(d),
+                         pair_.search_distance, found_);
+}
+
+/// What the search must know of a point of a surface that may meet itself; nothing for other pairs.
+std::optional<OwnBody> ContactPoints::own_body(const ContactPoint& point,
+                                               std::span<const double> reference_normal) const {
+  if (welded_.empty()) return std::nullopt;
+  return OwnBody{.facet = master_->find_own(point.facet),
+                 .place = std::span(point.place).first(reference_normal.size()),
+                 .normal = reference_normal,
+                 .thickness = point.thickness,
+                 .welded = welded_};
 }
 
 // --- placing ---------------------------------------------------------------------------------------------------------
@@ -176,7 +208,9 @@ void ContactPoints::add_point(std::int32_t facet, std::span<const double> positi
     for (int c = 0; c < d; ++c)
       point.place[c] += shape[a] * positions[a * d + c];
   point.size = facet_size(type, positions);
-  point.reference_weight = point.weight = area * circumference(pair_.space, point.place[0]);
+  point.reference_weight = area * circumference(pair_.space, point.place[0]);
+  if (pair_.meets_itself()) point.reference_weight *= half_pass;
+  point.weight = point.reference_weight;
   points_.push_back(point);
   scratch_.push_back(scratch);
 }
@@ -200,10 +234,13 @@ std::size_t ContactPoints::add_values(ElementType type, std::span<const double> 
 void ContactPoints::search() {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto d = static_cast<std::size_t>(mesh_.dim);
+    const auto normal = std::span(scratch_[i].slave_normal).first(d);
+    const auto own = own_body(points_[i], normal);
     attach(points_[i], find_master({.place = std::span(points_[i].place).first(d),
-                                    .normal = std::span(scratch_[i].slave_normal).first(d),
+                                    .normal = normal,
                                     .size = points_[i].size,
-                                    .guess = scratch_[i].guess}));
+                                    .guess = scratch_[i].guess,
+                                    .own = own ? &*own : nullptr}));
     set_epsilon(points_[i]);
   }
   order_by_master();

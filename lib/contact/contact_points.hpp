@@ -30,6 +30,7 @@ struct ContactPoint {
   double gap0 = 1e300;           // in finite kinematics the current gap
   std::array<double, 3> place{}; // reference position
   std::array<double, 3> normal{};
+  double thickness = no_thickness; // of the body behind it, where the surface may meet itself
   std::array<double, 9> master_shape{};
 
   static constexpr std::int32_t none = -1;  // nothing within the search distance: open for good
@@ -39,7 +40,8 @@ struct ContactPoint {
 /// A point and its projection in the current configuration.
 struct PointNow {
   SurfacePoint slave;
-  std::array<double, 2> xi{}; // of the projection on the master's facet
+  std::array<double, 3> reference_normal{}; // of the slave
+  std::array<double, 2> xi{};               // of the projection on the master's facet
   Eigen::Vector3d projection = Eigen::Vector3d::Zero();
   ProjectionHold hold = OnFacet{};
 };
@@ -85,9 +87,12 @@ class ContactPoints {
   void follow(const State& state);
   /// Makes the iterate of the last follow() the state from which the next increment starts; and takes up an earlier
   /// such state again.
-  void accept() { accepted_displacement_ = displacement_; }
+  void accept();
   const std::vector<double>& accepted_displacement() const { return accepted_displacement_; }
   void restore(std::vector<double> accepted_displacement);
+  /// Where the surface may meet itself: has a point gone through the wall that was in front of it at the last accepted
+  /// state, and so far behind it that it has lost sight of it (own_body.hpp)? On this rank, as of the last follow().
+  bool has_gone_through() const;
   /// As of the last follow().
   const PointNow& now(std::size_t i) const { return now_[i]; }
   /// A master facet at ξ.
@@ -104,7 +109,15 @@ class ContactPoints {
     std::array<double, 3> slave_normal;
     std::int32_t guess; // master facet that is likely to be the nearest, or none
   };
+  /// A place on a master facet.
+  struct FacetPlace {
+    std::int64_t facet = none_in_front; // its name
+    std::array<double, 2> xi{};
+    static constexpr std::int64_t none_in_front = -1;
+  };
   void gather_master(const std::string& surface);
+  void measure_thickness();
+  std::optional<OwnBody> own_body(const ContactPoint& point, std::span<const double> reference_normal) const;
   Box slave_box(std::span<const double> displacement) const;
   void gather_where_needed();
   void follow_all();
@@ -139,7 +152,10 @@ class ContactPoints {
   double augmentation_ = 1.0;       // factor of ε
   double mean_size_ = 0.0;          // of the slave facets, weighted with their area; of a penalty only
   std::vector<std::int32_t> found_; // scratch
-  std::size_t num_values_ = 0;      // of values_ that are not the averages' over the master
+  std::vector<std::int32_t>
+      welded_; // of bodies, where the surface may meet itself; and what was in front of its points
+  std::vector<FacetPlace> in_front_; // at the last accepted state; empty when that is not known
+  std::size_t num_values_ = 0;       // of values_ that are not the averages' over the master
   // Finite kinematics:
   std::vector<PointNow> now_;
   std::vector<double> displacement_, accepted_displacement_, gathered_displacement_; // num_local x dim

@@ -17,6 +17,9 @@ namespace {
 
 Eigen::Vector3d vector(const std::array<double, 3>& v) { return Eigen::Vector3d(v[0], v[1], v[2]); }
 std::array<double, 3> array(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+std::array<double, 3> normal_of(const SurfacePoint& at) {
+  return array(at.tangents.col(0).cross(at.tangents.col(1)).normalized());
+}
 
 } // namespace
 
@@ -71,9 +74,29 @@ void ContactPoints::gather_where_needed() {
     point.master = ContactPoint::none; // numbers of the facets gathered before
 }
 
+void ContactPoints::accept() {
+  accepted_displacement_ = displacement_;
+  if (welded_.empty()) return;
+  in_front_.assign(points_.size(), {});
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (points_[i].master >= 0) in_front_[i] = {master_->name(points_[i].master), now_[i].xi};
+}
+
+bool ContactPoints::has_gone_through() const {
+  for (std::size_t i = 0; i < in_front_.size(); ++i) {
+    const auto facet = in_front_[i].facet < 0 ? -1 : master_->find(in_front_[i].facet);
+    if (facet < 0) continue;
+    const auto wall = master_at(facet, in_front_[i].xi);
+    const double height = (now_[i].slave.place - wall.place).dot(vector(normal_of(wall)));
+    if (height <= -points_[i].thickness) return true;
+  }
+  return false;
+}
+
 void ContactPoints::restore(std::vector<double> accepted_displacement) {
   accepted_displacement_ = std::move(accepted_displacement);
   accepted_is_gathered_ = false;
+  in_front_.clear();
   followed_time_.reset();
 }
 
@@ -91,6 +114,7 @@ void ContactPoints::place_now(ContactPoint& point, PointNow& now) const {
   const auto place = xi(point);
   const auto before = surface_point(type, std::span(reference).first(nodes.size() * d), place);
   now.slave = surface_point(type, std::span(current).first(nodes.size() * d), place);
+  now.reference_normal = normal_of(before);
   const auto area = [&](const SurfacePoint& at) {
     return at.tangents.col(0).cross(at.tangents.col(1)).norm() * circumference(pair_.space, at.place[0]);
   };
@@ -113,9 +137,13 @@ void ContactPoints::follow_master(ContactPoint& point, PointNow& now) {
     point.normal = contact.normal;
     return;
   }
-  const auto normal = array(now.slave.tangents.col(0).cross(now.slave.tangents.col(1)).normalized());
-  const auto found = find_master(
-      {.place = place, .normal = std::span(normal).first(d), .size = point.size, .guess = std::max(-1, point.master)});
+  const auto normal = normal_of(now.slave);
+  const auto own = own_body(point, std::span(now.reference_normal).first(d));
+  const auto found = find_master({.place = place,
+                                  .normal = std::span(normal).first(d),
+                                  .size = point.size,
+                                  .guess = std::max(-1, point.master),
+                                  .own = own ? &*own : nullptr});
   attach(point, found);
   set_epsilon(point);
   if (found.facet < 0) return;

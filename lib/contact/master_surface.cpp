@@ -44,8 +44,7 @@ MasterSurface::MasterSurface(const DofLayout& layout, const FacetSet& surface, s
     : dim_(layout.dim()) {
   const auto& mesh = layout.mesh();
   const auto reaches = gather_boxes(mesh.comm, reach);
-  int rank = 0;
-  MPI_Comm_rank(mesh.comm, &rank);
+  MPI_Comm_rank(mesh.comm, &rank_);
   // A facet travels as type, body, name, then for each node its global number and its dim equations; positions apart.
   std::vector<std::vector<std::int64_t>> numbers(reaches.size());
   std::vector<std::vector<double>> positions(reaches.size());
@@ -54,7 +53,7 @@ MasterSurface::MasterSurface(const DofLayout& layout, const FacetSet& surface, s
       if (reaches[to].empty() || !boxes[f].meets(reaches[to])) continue;
       numbers[to].push_back(static_cast<std::int64_t>(surface.types[f]));
       numbers[to].push_back(surface.bodies[f]);
-      numbers[to].push_back((std::int64_t(rank) << 32) + f); // facets stay on their rank
+      numbers[to].push_back(facet_name(rank_, f));
       for (const auto node : surface.facet(f)) {
         numbers[to].push_back(mesh.global_node(node));
         for (int c = 0; c < dim_; ++c)
@@ -122,6 +121,12 @@ std::vector<std::int32_t> MasterSurface::neighbourhood(std::int32_t facet) const
   std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
   return near;
+}
+
+bool MasterSurface::share_a_node(std::int32_t a, std::int32_t b) const {
+  const auto others = nodes(b);
+  return std::any_of(nodes(a).begin(), nodes(a).end(),
+                     [&](std::int32_t node) { return std::find(others.begin(), others.end(), node) != others.end(); });
 }
 
 void MasterSurface::move() {

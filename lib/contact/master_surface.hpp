@@ -28,17 +28,20 @@ class MasterSurface {
   /// A name of the facet that is the same on all ranks and for the whole run; and the facet of that name, or -1.
   std::int64_t name(std::int32_t facet) const { return names_[facet]; }
   std::int32_t find(std::int64_t name) const;
+  /// Where facet `f` of this rank's own part of the surface stands among the gathered ones, or -1.
+  std::int32_t find_own(std::int32_t f) const { return find(facet_name(rank_, f)); }
   /// The facets with which a facet shares nodes, and itself.
   std::vector<std::int32_t> neighbourhood(std::int32_t facet) const;
+  bool share_a_node(std::int32_t a, std::int32_t b) const;
   /// Nodes of a facet, as numbers of this surface.
   std::span<const std::int32_t> nodes(std::int32_t facet) const {
     return std::span(nodes_).subspan(offsets_[facet], offsets_[facet + 1] - offsets_[facet]);
   }
   /// Where a facet's nodes stand (number of nodes x dim): reference positions, or after move() the current ones.
   std::span<const double> positions(std::int32_t facet) const {
-    return std::span(moved_positions_.empty() ? facet_positions_ : moved_positions_)
-        .subspan(std::size_t(offsets_[facet]) * dim_, std::size_t(offsets_[facet + 1] - offsets_[facet]) * dim_);
+    return of_facet(moved_positions_.empty() ? facet_positions_ : moved_positions_, facet);
   }
+  std::span<const double> reference_positions(std::int32_t facet) const { return of_facet(facet_positions_, facet); }
   /// Displacement equations of a node, dim of them.
   std::span<const PetscInt> equations(std::int32_t node) const {
     return std::span(equations_).subspan(std::size_t(node) * dim_, dim_);
@@ -59,11 +62,18 @@ class MasterSurface {
   void move();
 
  private:
+  /// Facets stay on their rank.
+  static std::int64_t facet_name(int rank, std::int32_t f) { return (std::int64_t(rank) << 32) + f; }
   void receive(std::span<const std::int64_t> numbers, std::span<const double> positions);
   void find_rim();
   void plant();
+  std::span<const double> of_facet(const std::vector<double>& values, std::int32_t facet) const {
+    return std::span(values).subspan(std::size_t(offsets_[facet]) * dim_,
+                                     std::size_t(offsets_[facet + 1] - offsets_[facet]) * dim_);
+  }
 
   int dim_;
+  int rank_ = 0;
   std::vector<ElementType> types_;
   std::vector<std::int32_t> bodies_, offsets_ = {0}, nodes_;
   std::vector<std::int64_t> names_;

@@ -22,6 +22,14 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
+/// Of x above the facet at its projection.
+double height_over(const Projection& projection, std::span<const double> x) {
+  double height = 0.0;
+  for (std::size_t c = 0; c < x.size(); ++c)
+    height += (x[c] - projection.point[c]) * projection.normal[c];
+  return height;
+}
+
 /// Corners of the facet between which ξ lies: one for a vertex, two for an edge.
 std::vector<std::int32_t> corners_at(ElementType type, Feature feature, std::span<const double> xi) {
   if (element_dim(type) == 1) return {xi[0] < 0.0 ? 0 : 1};
@@ -64,9 +72,12 @@ Nearest nearest_facing(const MasterSurface& master, const SearchPoint& point, do
   double best = search_distance;
   Nearest nearest;
   const auto consider = [&](std::int32_t candidate, double radius) {
+    if (point.own && master.share_a_node(point.own->facet, candidate)) return;
     const auto projection = closest_point(master.type(candidate), master.positions(candidate), point.place);
     if (!projection.found || projection.distance > std::min(best, radius)) return;
     if (!is_facing(point.normal, projection.normal)) return;
+    if (point.own && !is_partner(master, *point.own, candidate, projection, height_over(projection, point.place)))
+      return;
     const bool tie = nearest.facet >= 0 && projection.distance > best * (1.0 - 1e-12);
     if (tie && projection.feature != Feature::Facet) return;
     best = projection.distance;
@@ -133,9 +144,12 @@ MasterPlace find_along_normal(const MasterSurface& master, const SearchPoint& po
   double best = search_distance;
   MasterPlace place;
   for (const auto candidate : scratch) {
+    if (point.own && master.share_a_node(point.own->facet, candidate)) continue;
     const auto projection =
         project_along(master.type(candidate), master.positions(candidate), point.place, point.normal);
     if (!projection.found || projection.distance > best || !is_facing(point.normal, projection.normal)) continue;
+    if (point.own && !is_partner(master, *point.own, candidate, projection, height_over(projection, point.place)))
+      continue;
     best = projection.distance;
     place = {.facet = candidate, .xi = projection.xi, .normal = {}, .gap = 0.0, .hold = AlongSlaveNormal{}};
     for (std::size_t c = 0; c < d; ++c) {

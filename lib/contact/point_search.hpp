@@ -2,7 +2,7 @@
 // those in which the MasterSurface stands.
 #pragma once
 
-#include "contact/master_surface.hpp"
+#include "contact/own_body.hpp"
 #include "geometry/contact_kinematics.hpp"
 
 #include <array>
@@ -18,6 +18,7 @@ struct SearchPoint {
   std::span<const double> normal; // outward normal of the slave there, dim components
   double size;                    // of the slave facet
   std::int32_t guess;             // master facet that is likely to be the nearest, or negative
+  const OwnBody* own = nullptr;   // where the master is the surface that the point is on, else null
 };
 
 /// What it finds.

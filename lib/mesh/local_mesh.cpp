@@ -113,9 +113,11 @@ void Filler::fill_nodes(const std::vector<PetscInt>& points) {
     mesh_.coordinates.insert(mesh_.coordinates.end(), record.place.begin(), record.place.begin() + mesh_.dim);
     mesh_.keys.push_back(point_key(reader_, plex_.records, points[node]));
     mesh_.is_vertex.push_back(reader_.is_vertex(points[node]));
-    for (const auto group : facts_.regions.groups(record.region))
-      if (group != facts_.regions.exterior())
-        mesh_.node_groups.at(facts_.group_names[group]).push_back(static_cast<std::int32_t>(node));
+    for (const auto group : facts_.regions.groups(record.region)) {
+      auto& nodes = group == facts_.regions.exterior() ? mesh_.exterior_nodes
+                                                       : mesh_.node_groups.at(facts_.group_names[group]);
+      nodes.push_back(static_cast<std::int32_t>(node));
+    }
   }
 }
 
@@ -171,6 +173,11 @@ Mesh Filler::filled() {
 }
 
 } // namespace
+
+void name_exterior(Mesh& mesh) {
+  mesh.surfaces[exterior_name] = mesh.exterior;
+  mesh.node_groups[exterior_name] = mesh.exterior_nodes;
+}
 
 Mesh local_mesh(MPI_Comm comm, PlexMesh&& plex, const MeshFacts& facts) {
   return Filler(comm, std::move(plex), facts).filled();

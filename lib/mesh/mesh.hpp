@@ -60,6 +60,7 @@ struct Mesh {
   std::vector<CellBlock> blocks;
   std::map<std::string, FacetSet> surfaces; // physical groups of dimension dim - 1; every name on every rank
   FacetSet exterior;                        // all boundary facets of all bodies
+  std::vector<std::int32_t> exterior_nodes; // local nodes (owned and ghost) of boundary facets of any rank
   /// Nodes (owned and ghost) of every physical group of any dimension; every name on every rank.
   std::map<std::string, std::vector<std::int32_t>> node_groups;
 
@@ -71,5 +72,9 @@ struct Mesh {
     return std::span(coordinates).subspan(std::size_t(node) * dim, dim);
   }
 };
+
+/// The name that exterior and exterior_nodes get among the surfaces and groups of a mesh where a scene wants them there.
+inline const char* const exterior_name = "all exterior surfaces";
+void name_exterior(Mesh& mesh);
 
 } // namespace amontons

@@ -170,7 +170,7 @@ void record_exterior(DM dm, const PlexReader& reader, Regions& regions, std::vec
   for (PetscInt facet = reader.facets_begin(); facet < reader.facets_end(); ++facet) {
     PetscInt cells = 0;
     AMT_PETSC(DMPlexGetSupportSize(dm, facet, &cells));
-    if (cells == 1) records[facet].region = regions.with(records[facet].region, regions.exterior());
+    if (cells == 1) add_closure(dm, facet, regions.exterior(), regions, records);
   }
 }
 

@@ -163,7 +163,8 @@ Certificate Case::certify() const {
                             .external_forces = external,
                             .energy = energy,
                             .tolerances = {},
-                            .force_floor = force_floor});
+                            .force_floor = force_floor,
+                            .kinematics = kinematics});
 }
 
 void displace(Case& scene, const Field& u) {

@@ -29,6 +29,7 @@ struct Case {
   std::vector<ContactSamples> samples;
   EnergyLedger energy;
   double force_floor = 0.0;
+  Kinematics kinematics = Kinematics::Small;
 
   Certificate certify() const;
 };
