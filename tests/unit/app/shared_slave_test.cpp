@@ -62,7 +62,7 @@ struct Fixture {
 
   Fixture(int dim, const Enforcement& enforcement, double alpha, bool has_friction) : mesh(divided_blocks(dim, 4)) {
     const Space space = dim == 2 ? Space::PlaneStress : Space::Solid;
-    const std::vector<BulkLawPtr> laws = {make_law(Elastic{300.0, 0.0}, space), make_law(Elastic{100.0, 0.0}, space)};
+    const std::vector<SmallLaw> laws = {Elastic{300.0, 0.0}, Elastic{100.0, 0.0}};
     std::vector<ContactPair> declared;
     for (const auto* slave : {"upper_bottom", "right_bottom"}) {
       ContactPair pair{.name = slave,
