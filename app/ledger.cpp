@@ -206,6 +206,11 @@ void Ledger::accept(Vec unknowns) {
   const double bulk_energy = scene_.bulk_energy(unknowns);
   virtual_work_defect_ = here[3] - contact_work - 2.0 * bulk_energy;
   virtual_work_scale_ = here[4] + 2.0 * bulk_energy;
+  if (scene_.stabilization) { // a load that it bears alone leaves nothing but rounding of the other terms
+    PetscScalar resisted = 0.0;
+    AMT_PETSC(VecDot(viscous_, unknowns, &resisted));
+    virtual_work_scale_ += std::abs(resisted);
+  }
   AMT_PETSC(VecCopy(external_, external_old_));
   AMT_PETSC(VecCopy(unknowns, unknowns_old_));
 }

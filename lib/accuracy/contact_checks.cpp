@@ -64,8 +64,8 @@ double gap_under_pressure(const MasterHit& hit, double size) {
 
 /// Adds the forces that the samples claim to the bodies of both sides. That of the pressure on the master acts on the
 /// same line as on the slave, so its moment may be taken at the slave's point. Shear acts across that line at the
-/// master's own point, as far away as the two are in the reference configuration, where small kinematics balance forces:
-/// the couple that remains is of the order of what they neglect, and belongs to the balance of the whole scene.
+/// master's own point, as far away as the two are in the reference configuration, where small kinematics balance
+/// forces: the couple that remains is of the order of what they neglect, and belongs to the balance of the whole scene.
 void add_forces(const ContactSamples& samples, const FacetSet& slave, std::span<const MasterHit> hits, bool is_rigid,
                 const std::array<double, 3>& pivot, ClaimedForces& forces) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
