@@ -214,6 +214,11 @@ void Ledger::accept(Vec unknowns) {
   virtual_work_defect_ = here[3] - contact_work - internal_work;
   // A plastic body that is back in its place has stresses left, whose work on its displacement cancels.
   virtual_work_scale_ = here[4] + std::abs(internal_work) + bulk_dissipation_;
+  if (scene_.stabilization) { // a load that it bears alone leaves nothing but rounding of the other terms
+    PetscScalar resisted = 0.0;
+    AMT_PETSC(VecDot(viscous_, unknowns, &resisted));
+    virtual_work_scale_ += std::abs(resisted);
+  }
   AMT_PETSC(VecCopy(external_, external_old_));
   AMT_PETSC(VecCopy(unknowns, unknowns_old_));
 }
