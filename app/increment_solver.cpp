@@ -1,6 +1,6 @@
 #include "increment_solver.hpp"
 
-#include "solve/kept_factorization.hpp"
+#include "solve/solver_choice.hpp"
 
 #include <algorithm>
 

@@ -11,21 +11,14 @@
 #include "solve/kept_factorization.hpp"
 
 #include "base/timer.hpp"
-#include "solve/newton.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace amontons {
 
 namespace {
 
-/// Unknowns above which factorizations cost more than about 15 back-substitutions.
-constexpr PetscInt kept_from_2d = 400'000;
-constexpr PetscInt kept_from_3d = 20'000;
-/// Unknowns above which displacement-only problems in 3D go to a Krylov method with multigrid.
-constexpr PetscInt krylov_from_3d = 100'000;
 /// Operations of a factorization that take the time of one factor entry in a back-substitution. MUMPS with OpenBLAS,
 /// one thread, 8k, 25k and 73k unknowns in 3D and 25k in 2D: between 41 and 44.
 constexpr double operations_per_entry = 42.0;
@@ -38,41 +31,7 @@ constexpr double overshoot = 1e-2;
 constexpr int fewest = 4, most_of_fresh = 40;
 constexpr int restart = 40;
 
-std::string option(const char* name) {
-  std::array<char, 64> value{};
-  AMT_PETSC(PetscOptionsGetString(nullptr, nullptr, name, value.data(), value.size(), nullptr));
-  return value.data();
-}
-
 } // namespace
-
-std::string choose_newton_solver(const Problem& problem) {
-  const bool is_free = option("-pc_type").empty() && option("-ksp_type").empty();
-  auto words = choose_linear_solver(problem);
-  const bool is_direct = option("-pc_type") == PCCHOLESKY || option("-pc_type") == PCLU;
-  const auto& layout = problem.layout();
-  const bool is_2d = layout.dim() == 2;
-  const bool is_displacement_only = layout.num_extra() == 0;
-  if (is_free && is_direct && is_displacement_only && !is_2d && layout.num_global() > krylov_from_3d) {
-    AMT_PETSC(PetscOptionsSetValue(nullptr, "-pc_type", PCGAMG));
-    AMT_PETSC(PetscOptionsSetValue(nullptr, "-ksp_type", problem.tangent_is_symmetric() ? KSPCG : KSPGMRES));
-    default_option("-ksp_max_it", "2000");
-    words = "smoothed-aggregation multigrid with conjugate gradients or GMRES";
-  } else if (is_free && is_direct && layout.num_global() > (is_2d ? kept_from_2d : kept_from_3d)) {
-    AMT_PETSC(PetscOptionsSetValue(nullptr, "-pc_type", PCSHELL));
-    words = "MUMPS, symmetric factorizations kept over several tangents, with FGMRES";
-  }
-  if (is_free && option("-ksp_type") != KSPPREONLY) { // a solve goes as far as Newton's method can use
-    default_option("-snes_ksp_ew", "true");
-    default_option("-snes_ksp_ew_rtol0", "1e-3");
-    default_option("-snes_ksp_ew_rtolmax", "1e-3");
-    if (option("-ksp_type") == KSPGMRES) {
-      default_option("-ksp_gmres_restart", "40");
-      default_option("-ksp_pc_side", "right");
-    }
-  }
-  return words;
-}
 
 bool KeptFactorization::is_asked_for(SNES snes) {
   KSP ksp = nullptr;

@@ -6,14 +6,7 @@
 
 #include "form/problem.hpp"
 
-#include <string>
-
 namespace amontons {
-
-/// Sets the defaults of choose_linear_solver() for Newton's method, and, where a factorization costs many
-/// back-substitutions (large problems, 3D), `-pc_type shell`, which stands for KeptFactorization. What the user has
-/// asked for stays. Returns in words what was chosen.
-std::string choose_newton_solver(const Problem& problem);
 
 class KeptFactorization {
  public:
@@ -23,7 +16,7 @@ class KeptFactorization {
   KeptFactorization(const KeptFactorization&) = delete;
   KeptFactorization& operator=(const KeptFactorization&) = delete;
 
-  /// Has the user, or choose_newton_solver, asked for it? Collective.
+  /// Does this SNES use a preconditioner of type shell? (The user or choose_newton_solver has asked for it.)
   static bool is_asked_for(SNES snes);
 
   /// The matrix of the SNES holds another tangent.

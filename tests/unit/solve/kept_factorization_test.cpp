@@ -4,6 +4,7 @@
 #include "form/bulk.hpp"
 #include "material/elastic.hpp"
 #include "solve/newton.hpp"
+#include "solve/solver_choice.hpp"
 #include "two_blocks.hpp"
 
 #include <algorithm>

@@ -1,0 +1,60 @@
+#include "solve/solver_choice.hpp"
+
+#include "solve/newton.hpp"
+
+#include <array>
+
+namespace amontons {
+
+namespace {
+
+/// Unknowns above which factorizations cost more than about 15 back-substitutions.
+constexpr PetscInt kept_from_2d = 400'000;
+constexpr PetscInt kept_from_3d = 20'000;
+/// Unknowns above which displacement-only problems in 3D go to a Krylov method with multigrid.
+constexpr PetscInt krylov_from_3d = 150'000;
+/// Unknowns above which memory counts more than the time of multigrid's set-up.
+constexpr PetscInt lean_products_from = 1'000'000;
+
+std::string option(const char* name) {
+  std::array<char, 64> value{};
+  AMT_PETSC(PetscOptionsGetString(nullptr, nullptr, name, value.data(), value.size(), nullptr));
+  return value.data();
+}
+
+} // namespace
+
+std::string choose_newton_solver(const Problem& problem) {
+  const auto& layout = problem.layout();
+  const PetscInt size = layout.num_global();
+  const bool is_free = option("-pc_type").empty() && option("-ksp_type").empty();
+  auto words = choose_linear_solver(problem);
+  const bool is_direct = option("-pc_type") == PCCHOLESKY || option("-pc_type") == PCLU;
+  const bool is_2d = layout.dim() == 2;
+  const bool is_displacement_only = layout.num_extra() == 0;
+  if (is_free && is_direct && is_displacement_only && !is_2d && size > krylov_from_3d) {
+    AMT_PETSC(PetscOptionsSetValue(nullptr, "-pc_type", PCGAMG));
+    AMT_PETSC(PetscOptionsSetValue(nullptr, "-ksp_type", problem.tangent_is_symmetric() ? KSPCG : KSPGMRES));
+    default_option("-ksp_max_it", "2000");
+    words = "smoothed-aggregation multigrid with conjugate gradients or GMRES";
+  } else if (is_free && is_direct && size > (is_2d ? kept_from_2d : kept_from_3d)) {
+    AMT_PETSC(PetscOptionsSetValue(nullptr, "-pc_type", PCSHELL));
+    words = "MUMPS, symmetric factorizations kept over several tangents, with FGMRES";
+  }
+  if (is_free && option("-ksp_type") != KSPPREONLY) { // a solve goes as far as Newton's method can use
+    default_option("-snes_ksp_ew", "true");
+    default_option("-snes_ksp_ew_rtol0", "1e-3");
+    default_option("-snes_ksp_ew_rtolmax", "1e-3");
+    if (option("-ksp_type") == KSPGMRES) {
+      default_option("-ksp_gmres_restart", "40");
+      default_option("-ksp_pc_side", "right");
+    }
+    int ranks = 1;
+    MPI_Comm_size(problem.comm(), &ranks);
+    // Coarse matrices are made in half the memory; PETSc 3.18 has this for several ranks only.
+    if (ranks > 1 && size > lean_products_from) default_option("-matptap_via", "allatonce");
+  }
+  return words;
+}
+
+} // namespace amontons
