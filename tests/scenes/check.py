@@ -14,6 +14,7 @@ import friction_cases
 import hertz_cases
 import other_cases
 import patch_cases
+import self_contact_cases
 import solid_cases
 import vi_cases
 from harness import Bench
@@ -27,6 +28,7 @@ CASES = {
     **solid_cases.CASES,
     **vi_cases.CASES,
     **finite_contact_cases.CASES,
+    **self_contact_cases.CASES,
 }
 for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case

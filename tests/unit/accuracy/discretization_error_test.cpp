@@ -2,6 +2,7 @@
 // on every element type in every space.
 #include "../form/dense_system.hpp"
 #include "accuracy/discretization_error.hpp"
+#include "form/bulk.hpp"
 #include "form/loads.hpp"
 #include "material/elastic.hpp"
 
