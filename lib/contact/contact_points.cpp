@@ -33,6 +33,21 @@ void include_node(Box& box, const Mesh& mesh, std::int32_t node, std::span<const
   box.include(std::span<const double>(place.data(), mesh.dim));
 }
 
+/// Those whose body is in.
+template <class IsIn>
+FacetSet facets_of(const FacetSet& all, IsIn&& is_in) {
+  FacetSet part;
+  for (std::int32_t f = 0; f < all.size(); ++f) {
+    if (!is_in(all.bodies[f])) continue;
+    const auto nodes = all.facet(f);
+    part.types.push_back(all.types[f]);
+    part.bodies.push_back(all.bodies[f]);
+    part.nodes.insert(part.nodes.end(), nodes.begin(), nodes.end());
+    part.offsets.push_back(static_cast<std::int32_t>(part.nodes.size()));
+  }
+  return part;
+}
+
 std::array<double, 2> centre_of(ElementType type) {
   return num_vertices(type) == 3 ? std::array{1.0 / 3.0, 1.0 / 3.0} : std::array{0.0, 0.0};
 }
@@ -87,23 +102,28 @@ void ContactPoints::gather_master(const std::string& surface) {
   accepted_is_gathered_ = true;
 }
 
-/// Of the body behind every point: see own_body.hpp. Collective.
+/// Of the body behind every point: see own_body.hpp. One body (with those welded to it) after the other, for others may
+/// be in the way. Collective.
 void ContactPoints::measure_thickness() {
   welded_ = welded_bodies(mesh_);
-  const auto& facets = mesh_.exterior;
-  std::vector<Box> boxes(facets.size());
-  for (std::int32_t f = 0; f < facets.size(); ++f)
-    for (const auto node : facets.facet(f))
-      boxes[f].include(mesh_.position(node));
+  const auto d = static_cast<std::size_t>(mesh_.dim);
   Box reach = slave_box(displacement_);
   if (!reach.empty()) reach.inflate(pair_.search_distance);
   if (mesh_.dim == 2) reach.low[2] = reach.high[2] = 0.0;
-  const MasterSurface exterior(layout_, facets, boxes, reach);
-  const auto d = static_cast<std::size_t>(mesh_.dim);
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    points_[i].thickness =
-        thickness_behind(exterior, std::span(points_[i].place).first(d), std::span(scratch_[i].slave_normal).first(d),
-                         pair_.search_distance, found_);
+  for (std::int32_t body = 0; body < static_cast<std::int32_t>(welded_.size()); ++body) {
+    if (welded_[body] != body) continue;
+    const auto facets = facets_of(mesh_.exterior, [&](std::int32_t other) { return welded_[other] == body; });
+    std::vector<Box> boxes(facets.size());
+    for (std::int32_t f = 0; f < facets.size(); ++f)
+      for (const auto node : facets.facet(f))
+        boxes[f].include(mesh_.position(node));
+    const MasterSurface exterior(layout_, facets, boxes, reach);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (welded_[slave_->bodies[points_[i].facet]] != body) continue;
+      const std::span<const double> place(points_[i].place.data(), d), normal(scratch_[i].slave_normal.data(), d);
+      points_[i].thickness = thickness_behind(exterior, place, normal, pair_.search_distance, found_);
+    }
+  }
 }
 
 /// What the search must know of a point of a surface that may meet itself; nothing for other pairs.

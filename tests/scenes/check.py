@@ -17,6 +17,7 @@ import hertz_cases
 import obstacle_cases
 import other_cases
 import patch_cases
+import self_contact_cases
 import solid_cases
 import solver_cases
 import vi_cases
@@ -34,6 +35,7 @@ CASES = {
     **adapt_cases.CASES,
     **finite_contact_cases.CASES,
     **solver_cases.CASES,
+    **self_contact_cases.CASES,
 }
 for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case

@@ -9,8 +9,9 @@ PLATES = ((0.5, 0.039400), (1.0, 0.083472), (2.0, 0.186765), (2.786408, 0.282230
 # The same ring under outer pressure p, which buckles it at 3 and brings opposite points together at 5.2469 (J. E.
 # Flaherty, J. B. Keller, S. I. Rubinow, SIAM J. Appl. Math. 23 (1972) 446-455): half-axes before ...
 FREE = {3.8: (1.34393, 0.36253), 4.4: (1.36948, 0.17533), 5.0: (1.37162, 0.04396)}
-# ... and force between the walls after that; the contact is a point up to p = 10.34.
-PRESSED = {6.748: 2.339, 8.248: 4.685, 9.748: 7.031}
+# ... and force between the walls after that, one point up to p = 10.34: the elastica again, stopped by the other wall at half
+# the thickness before the middle lines meet (p = 5.1883; it gives 5.24689 and 2.339, 4.685, 7.032 for no thickness).
+PRESSED = {6.748: 2.432, 8.248: 4.780, 9.748: 7.129}
 
 
 def ring_under_pressure(cells):
@@ -20,7 +21,7 @@ def ring_under_pressure(cells):
     return {
         "mesh.parameters": {"n": cells, "t": t, "oval": 1e-3},
         "boundary.2": {"on": "outside", "pressure": f"t/{1 + 0.5 * t}"},
-        "contact": [{"name": "inside", "self": "skin", "enforce": {"penalty": {}}}],
+        "contact": [{"name": "inside", "self": "skin", "enforce": {"penalty": {"alpha": 1}}}],
         "steps": [
             {"name": f"to_{i}", "to": time, "increments": {"auto": {"first": 0.2, "largest": 0.5}}}
             for i, time in enumerate(times)
@@ -46,23 +47,68 @@ def wall_force(results):
 
 def ring_pressure(bench):
     """A ring buckled by pressure until opposite walls meet and press on each other."""
-    results = bench.run("ring_crush", ring_under_pressure(12))
+    results = bench.run("ring_crush", ring_under_pressure(24))
     for pressure, (x_exact, y_exact) in FREE.items():
         x, y = half_axes(results.at(pressure))
         bench.close(f"p = {pressure}: longer half-axis", x, x_exact, 0.005)
         bench.below(f"p = {pressure}: error of the shorter half-axis / R", abs(y - y_exact), 0.02)
     bench.below("p = 5: force between the walls", wall_force(results.at(5.0)), 0.0)
-    for pressure, exact in PRESSED.items():
-        bench.close(f"p = {pressure}: force between the walls", wall_force(results.at(pressure)), exact, 0.03)
+    # The pressure acts on the outer rim, which bends with the middle line: relative errors of the pressure are of the
+    # order of t / R. So pressures at the same force are compared.
+    for pressure in PRESSED:
+        force = wall_force(results.at(pressure))
+        exact = np.interp(force, [0.0, *PRESSED.values()], [5.1883, *PRESSED])
+        bench.close(f"pressure at a force of {force:.3f} between the walls", pressure, exact, 0.015)
 
 
-def plates_against_elastica(bench, results, tolerance):
-    history = results.history
-    approach, force = history["time"], -history["contact_top_force_y"]
-    for exact, at in PLATES:
-        bench.close(f"force at an approach of {at} diameters", np.interp(at, approach, force), exact, tolerance)
+def ring_plates(bench):
+    """Between two plates, up to where the ring lifts off in the middle."""
+    deck_steps = [{"name": "squeeze", "to": 0.2825, "increments": {"auto": {"first": 0.05, "largest": 0.1}}}]
+    history = bench.run("ring_crush", {"mesh.parameters.n": 16, "steps": deck_steps}).history
+    for exact, approach in PLATES:
+        force = np.interp(approach, history["time"], -history["contact_top_force_y"])
+        bench.close(f"force at an approach of {approach} diameters", force, exact, 0.01)
+    bench.below("contact of the ring with itself", history["contact_inside_area"].max(), 0.0)
+
+
+# --- a tube crushed along its axis ------------------------------------------------------------------------------------
+
+
+def tube_first_fold(bench):
+    """The first peak against the load at which all of the wall yields, then a fold that closes on itself."""
+    results = bench.run("tube_buckling_2d", {"steps.0.to": 16})
+    parameters = results.deck["mesh"]["parameters"]
+    steel = results.deck["materials"]["steel"]["elastic_plastic"]
+    yield_load = 2.0 * np.pi * parameters["R"] * parameters["t"] * steel["hardening"]["linear"]["yield"]
+    time, force = results.history["time"], -results.history["reaction_top_y"]
+    bench.close("first peak against the load of yielding", force[time < 5].max(), yield_load, 0.03)
+    touching = results.history["contact_folds_area"] > 0
+    before = force[~touching]
+    bench.below("first contact of the fold with itself", time[touching].min(), 15.5)
+    bench.below("lowest force before that / peak", before.min() / force[time < 5].max(), 0.4)
+    bench.below("lowest force / force at the end, once the fold is closed", before.min() / force[-1], 0.5)
+
+
+# --- ten discs --------------------------------------------------------------------------------------------------------
+
+
+def ten_discs(bench):
+    """Forces of floor and lid, and of the walls, balance; every neighbour is found, on any number of ranks."""
+    runs = {ranks: bench.run("ten_discs", {"steps.0.to": 0.5}, ranks=ranks) for ranks in (1, 2, 3)}
+    results = runs[2]
+    floor, lid = results.force("floor"), results.force("lid")
+    bench.below("floor against lid", abs(floor - lid) / floor, 1e-6)
+    left, right = results.force("left"), results.force("right")
+    bench.below("left against right", abs(left - right) / left, 1e-6)
+    bench.below("sum of the forces between the discs", results.force("discs") / floor, 1e-9)
+    exact = runs[1].nodal_sorted("displacement")
+    for ranks in (2, 3):
+        error = np.abs(runs[ranks].nodal_sorted("displacement") - exact).max() / np.abs(exact).max()
+        bench.below(f"{ranks} ranks: displacement", error, 1e-6)
 
 
 CASES = {
-    "ring_crush": {"pressure": ring_pressure},
+    "ring_crush": {"plates": ring_plates, "pressure": ring_pressure},
+    "tube_buckling_2d": {"first_fold": tube_first_fold},
+    "ten_discs": {"balance": ten_discs},
 }
