@@ -158,8 +158,9 @@ def cutback(case):
     status, text = case.run(2, case.deck({"steps.0.increments": 1}), "--out", plain)
     case.expect("one increment ends with 0", status == 0, text)
     needed = json.loads((plain / "summary.json").read_text())["newton_iterations"]
-    # One iteration too few for the whole load; a part of it needs fewer.
-    status, text = case.run(2, case.deck({"steps.0.increments": 1}), "--out", cut, "-snes_max_it", str(needed - 1))
+    # One iteration too few for the whole load; a part of it needs fewer. Remedies, which would get there, are off.
+    limits = ("-snes_max_it", str(needed - 1), "-remedies", "none")
+    status, text = case.run(2, case.deck({"steps.0.increments": 1}), "--out", cut, *limits)
     summary = json.loads((cut / "summary.json").read_text())
     case.expect("cutbacks happened", summary["cutbacks"] > 0, summary)
     if status == 0:
