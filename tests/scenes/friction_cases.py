@@ -196,8 +196,10 @@ def stack_ranks(bench, changes=None):
     reference = bench.run("stack_with_friction_3d", changes, ranks=1)
 
     def in_order(results, pair, field):
-        places = np.round(results.points[pair]["places"], 9)
-        return results.points[pair][field][np.lexsort(places.T)]
+        """By place, and where nodes of facets share one, by area and pressure."""
+        points = results.points[pair]
+        ties = (np.round(points["pressure"] / points["pressure"].max(), 6), np.round(points["weight"], 9))
+        return points[field][np.lexsort((*ties, *np.round(points["places"], 9).T))]
 
     for ranks in (2, 3):
         results = bench.run("stack_with_friction_3d", changes, ranks=ranks)
