@@ -30,6 +30,7 @@ for scene, case in vi_cases.VI.items():
     CASES[scene]["vi"] = case
 for scene, case in vi_cases.UNLOAD.items():
     CASES[scene]["vi_unload"] = case
+CASES["hertz_3d"]["multigrid"] = vi_cases.multigrid_on_graded_cells
 
 
 def main():
