@@ -175,7 +175,8 @@ def knobs_figure(study, outcomes):
     names = [name for name in study.sweeps if groups(study, outcomes, name)][:MAX_SWEEPS]
     if not names:
         return None
-    figure = plt.figure(figsize=(max(3.0 * len(names), 5.0), 8.4), layout="constrained")
+    width = max(3.0 * len(names), 5.0)
+    figure = plt.figure(figsize=(width, 8.4), layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=[16, 1])
     panels = above.subplots(3, len(names), squeeze=False, sharey="row")
     with_error = [quantity for quantity in study.quantities if quantity.reference]
@@ -202,6 +203,7 @@ def knobs_figure(study, outcomes):
     cut_round_off(panels[0, 0])
     key(panels[2, 0], [("Newton", {"color": newton[0]}), ("linear", {"color": ORANGE})], loc="upper left")
     key(below, [(f"error of {quantity.label}", {"color": curve[0]}) for quantity, curve in zip(with_error, errors)]
-        + [("failed", {"color": "#b03a48", "marker": "x", "ls": ""})], loc="center", ncols=5)
+        + [("failed", {"color": "#b03a48", "marker": "x", "ls": ""})], loc="center",
+        ncols=max(2, min(5, int(width / 2.5))))
     figure.suptitle(study.title)
     return figure

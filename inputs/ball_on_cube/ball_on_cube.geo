@@ -1,5 +1,5 @@
 // Unit cube in n x n x n equal hexahedra, the top at z = 0.
-DefineConstant[ n = {8, Name "cells along a side"} ];
+DefineConstant[ n = {16, Name "cells along a side"} ];
 
 Point(1) = {0, 0, -1};
 l[] = Extrude{1, 0, 0}{ Point{1}; Layers{n}; };

@@ -10,7 +10,8 @@ namespace amontons {
 namespace {
 
 constexpr int most_halvings = 30;
-/// Unknowns in 3D above which multigrid beats factorizations here: every iteration has another reduced matrix to factor.
+/// Unknowns in 3D above which multigrid beats factorizations here: every iteration has another reduced matrix to
+/// factor.
 constexpr PetscInt multigrid_from_3d = 100'000;
 /// Part of the promised fall of energy that a shortened step must bring (Armijo).
 constexpr double least_fall = 1e-4;

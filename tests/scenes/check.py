@@ -43,6 +43,7 @@ for scene, case in vi_cases.UNLOAD.items():
     CASES[scene]["vi_unload"] = case
 for scene, cases in condensed_cases.SCENES.items():
     CASES[scene].update(cases)
+CASES["hertz_3d"]["multigrid"] = vi_cases.multigrid_on_graded_cells
 
 
 def main():

@@ -104,12 +104,40 @@ def load_unload(scene, changes, pairs):
     return check
 
 
+MULTIGRID, DIRECT = ({"petsc": petsc} for petsc in ({"ksp_type": "cg", "ksp_rtol": 1e-8, "pc_type": "gamg"}, {}))
+
+
+def solves_alike(bench, scene, changes, most):
+    """Conjugate gradients with multigrid against a factorization; `most`: iterations of a linear solve."""
+    direct, results = (bench.run(scene, {**changes, **solver}) for solver in (DIRECT, MULTIGRID))
+    name = f"{scene}, {results.summary['scene']['unknowns']['displacement']} unknowns"
+    per_solve = results.summary["linear_iterations"] / results.summary["newton_iterations"]
+    bench.below(f"{name}: iterations of a linear solve", per_solve, most)
+    exact = direct.nodal_sorted("displacement")
+    error = np.abs(results.nodal_sorted("displacement") - exact).max() / np.abs(exact).max()
+    bench.below(f"{name}: displacement against a factorization", error, 1e-6)
+    return results.summary["newton_iterations"]
+
+
+def multigrid(bench):
+    """Iterations of the active set and of conjugate gradients that hardly grow with the mesh."""
+    active_set = [solves_alike(bench, "ball_on_cube", {"mesh.parameters.n": n}, 16) for n in (10, 16)]
+    bench.below("iterations of the active set, largest", max(active_set), 6)
+
+
+def multigrid_on_graded_cells(bench):
+    """Cells forty times as long as high and a body that contact alone holds: multigrid must not need many times more."""
+    for enforce in ({"vi": {}}, {"penalty": {}}):
+        solves_alike(bench, "hertz_3d", {"steps.0.increments": 1, "mesh.parameters.n": 6, "contact.0.enforce": enforce}, 40)
+
+
 def ranks(bench):
     common_checks.ranks_agree(bench, "wavy_block", PRESSED)
 
 
 CASES = {
     "wavy_block": {"free_boundary": free_boundary, "convergence": convergence, "triangles": triangles, "ranks": ranks},
+    "ball_on_cube": {"multigrid": multigrid},
 }
 UNLOAD = {
     "hertz_2d": load_unload("hertz_2d", {"boundary.3.resultant.y": "-450*min(t,2-t)", "mesh.parameters.h": 0.1}, ["interface"]),
