@@ -75,10 +75,9 @@ def reference_3d(bench):
     """A target of 3 %, so that the run stays short."""
     results = bench.run("hertz_3d_adaptive", {"adapt.target_error": 0.03})
     passes = passes_of(bench, "order 2", results, 0.03)
-    peak, profile = true_error("hertz_3d_adaptive", results)
+    peak, _ = true_error("hertz_3d_adaptive", results)
     bench.below("true error of the peak pressure", peak, 0.03)
     bench.below("true error / estimated error", peak / passes[-1]["error"], 1.0)
-    bench.below("L2 error of the pressure", profile, 0.1)
 
 
 CASES = {
