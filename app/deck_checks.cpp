@@ -129,8 +129,9 @@ void check_finite(const Check& check) {
                         "finite use `{semismooth: {}}`.");
     if (is_condensed(deck.contact[i].enforce))
       check.fail({"contact", i, "enforce"},
-                 path + ".enforce: the dual basis is made once, in the reference configuration. With kinematics: finite "
-                        "use `{semismooth: {}}`.");
+                 path +
+                     ".enforce: the dual basis is made once, in the reference configuration. With kinematics: finite "
+                     "use `{semismooth: {}}`.");
   }
 }
 

@@ -125,8 +125,8 @@ void MotionRecord::add(Scene& scene, Vec accepted, Vec unknowns) {
   const auto density = densities(scene);
   std::vector<double> wave_speed;
   for (std::size_t b = 0; b < density.size(); ++b)
-    wave_speed.push_back(
-        density[b] > 0.0 ? std::sqrt(scene.bulk->stiffness(static_cast<std::int32_t>(b)) / density[b]) : 0.0);
+    wave_speed.push_back(density[b] > 0.0 ? std::sqrt(scene.bulk->stiffness(static_cast<std::int32_t>(b)) / density[b])
+                                          : 0.0);
   const auto audit = audit_motion(scene.mesh, scene.deck.space, increment, dt, density, wave_speed);
   kinetic_ = std::max(kinetic_, audit.kinetic);
   speed_ = std::max(speed_, audit.largest_speed);

@@ -143,8 +143,8 @@ class ContactForm : public Form, public PairReport, public Switching {
   std::vector<double> gap_, lambda_, augmented_;
   std::vector<std::uint8_t> active_, assembled_active_, coupled_;
   bool assembled_ = false;
-  std::vector<Hold> holds_;          // empty: none
-  std::vector<std::uint8_t> wanted_; // active_ before holds
+  std::vector<Hold> holds_;                              // empty: none
+  std::vector<std::uint8_t> wanted_;                     // active_ before holds
   std::vector<std::vector<PetscInt>> coupled_equations_; // finite kinematics: of masters, sorted, per slave facet
   std::unique_ptr<TangentialPart> tangential_;
   std::vector<double> normal_traction_; // for it

@@ -114,8 +114,8 @@ void Filler::fill_nodes(const std::vector<PetscInt>& points) {
     mesh_.keys.push_back(point_key(reader_, plex_.records, points[node]));
     mesh_.is_vertex.push_back(reader_.is_vertex(points[node]));
     for (const auto group : facts_.regions.groups(record.region)) {
-      auto& nodes = group == facts_.regions.exterior() ? mesh_.exterior_nodes
-                                                       : mesh_.node_groups.at(facts_.group_names[group]);
+      auto& nodes =
+          group == facts_.regions.exterior() ? mesh_.exterior_nodes : mesh_.node_groups.at(facts_.group_names[group]);
       nodes.push_back(static_cast<std::int32_t>(node));
     }
   }

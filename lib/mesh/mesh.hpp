@@ -73,7 +73,8 @@ struct Mesh {
   }
 };
 
-/// The name that exterior and exterior_nodes get among the surfaces and groups of a mesh where a scene wants them there.
+/// The name that exterior and exterior_nodes get among the surfaces and groups of a mesh where a scene wants them
+/// there.
 inline const char* const exterior_name = "all exterior surfaces";
 void name_exterior(Mesh& mesh);
 
