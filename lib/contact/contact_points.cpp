@@ -335,13 +335,16 @@ void ContactPoints::set_epsilon(ContactPoint& point) const {
 }
 
 void ContactPoints::find_mean_size() {
-  double sums[2] = {0.0, 0.0};
-  for (const auto& point : points_) {
-    sums[0] += point.weight * point.size;
-    sums[1] += point.weight;
+  double sums[2] = {0.0, 0.0}; // facets, and their 1 / h
+  std::int32_t last = -1;
+  for (const auto& point : points_) { // facet by facet
+    if (point.facet == last) continue;
+    last = point.facet;
+    sums[0] += 1.0;
+    sums[1] += 1.0 / point.size;
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  mean_size_ = sums[0] / sums[1];
+  mean_size_ = sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
 }
 
 void ContactPoints::scale_augmentation(double factor) {

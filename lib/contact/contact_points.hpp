@@ -150,7 +150,7 @@ class ContactPoints {
   std::unique_ptr<MasterSurface> master_;
   std::array<double, 3> shift_{};
   double augmentation_ = 1.0;       // factor of ε
-  double mean_size_ = 0.0;          // of the slave facets, weighted with their area; of a penalty only
+  double mean_size_ = 0.0;          // harmonic, of the slave facets; of a penalty only
   std::vector<std::int32_t> found_; // scratch
   std::vector<std::int32_t>
       welded_; // of bodies, where the surface may meet itself; and what was in front of its points

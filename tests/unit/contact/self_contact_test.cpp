@@ -112,14 +112,17 @@ double sum(double mine, MPI_Comm comm = PETSC_COMM_WORLD) {
   return mine;
 }
 
-/// Mean size of slave facets, weighted with their area, before any motion: the h of a penalty.
+/// Harmonic mean of the sizes of slave facets, before any motion: the h of a penalty.
 double mean_size(const ContactForm& form) {
-  double weighted = 0.0, area = 0.0;
+  double facets = 0.0, inverse = 0.0;
+  std::int32_t last = -1;
   for (const auto& point : form.points().points()) {
-    weighted += point.weight * point.size;
-    area += point.weight;
+    if (point.facet == last) continue;
+    last = point.facet;
+    facets += 1.0;
+    inverse += 1.0 / point.size;
   }
-  return sum(weighted) / sum(area);
+  return sum(facets) / sum(inverse);
 }
 
 double norm(Vec vec) {
