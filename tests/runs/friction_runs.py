@@ -55,6 +55,9 @@ VARIANTS = {
 }
 
 
+LENGTHS = ("gap", "slip", "accumulated_slip")
+
+
 def variant_deck(case, name, steps, file_name):
     scene, changes, more, _ = VARIANTS[name]
     scenes = TOP / "inputs" if (TOP / "inputs" / scene).is_dir() else Path(__file__).parent
@@ -76,14 +79,15 @@ def point_fields(results):
 
 def largest_difference(a, b):
     """The largest difference of two runs in history (last row) and point fields, and where. Each quantity is relative
-    to its own largest value; forces along another axis and slip out of the plane may be rounding only, so vectors and
-    forces are taken together. Numbers of the solver are not compared."""
+    to its own largest value; forces along another axis and slip out of the plane may be rounding only, and so may all gaps
+    (with the dual basis), so vectors, forces and lengths are taken together. Numbers of the solver are not compared."""
     worst = (0.0, "nothing")
     first, second = point_fields(a), point_fields(b)
     if set(first) != set(second):
         return np.inf, f"fields {set(first) ^ set(second)}"
+    length = max(np.abs(first[name]).max() for name in LENGTHS)
     for name, values in first.items():
-        scale = np.abs(values).max()
+        scale = length if name in LENGTHS else np.abs(values).max()
         if scale > 0:
             worst = max(worst, (float(np.abs(values - second[name]).max() / scale), name))
     force = max(abs(values[-1]) for name, values in a.history.items() if "force" in name or "reaction" in name)
