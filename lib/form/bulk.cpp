@@ -218,17 +218,6 @@ void add_stiffness(const DofLayout& layout, const Material& material, std::span<
   });
 }
 
-/// Σ w density over a batch.
-template <class Kernel>
-double weighted(const Batch<Kernel>& batch, std::span<const double> density) {
-  double sum = 0;
-  std::size_t point = 0;
-  for (const auto& cell : batch.cells)
-    for (int q = 0; q < cell.size; ++q)
-      sum += cell.points[q].weight * density[point++];
-  return sum;
-}
-
 /// Σ w σ : ε over a batch.
 template <class Kernel>
 double work_at_points(const Batch<Kernel>& batch) {

@@ -66,6 +66,17 @@ PointStates virgin_states(const Mesh& mesh, Space space, const std::vector<Law>&
   return result;
 }
 
+/// Σ w density over a batch.
+template <class Batch>
+double weighted(const Batch& batch, std::span<const double> density) {
+  double sum = 0;
+  std::size_t point = 0;
+  for (const auto& cell : batch.cells)
+    for (int q = 0; q < cell.size; ++q)
+      sum += cell.points[q].weight * density[point++];
+  return sum;
+}
+
 /// What Residual::fail is told.
 inline std::string failure_text(const Mesh& mesh, const CellBlock& block, PointOutcome outcome) {
   return "in body '" + mesh.bodies[block.body] + "' " + std::string(outcome_text(outcome));

@@ -5,6 +5,7 @@
 #include "form/problem.hpp"
 #include "material/elastic.hpp"
 #include "solve/bounded_newton.hpp"
+#include "solver_support.hpp"
 #include "two_blocks.hpp"
 
 #include <cmath>
@@ -71,27 +72,6 @@ struct Fixture {
     problem = std::make_unique<Problem>(*layout, std::move(forms), prescribed);
   }
   ContactTotals totals(Vec u) const { return pair->totals(problem->state_at(u)); }
-};
-
-double largest(Vec vec) {
-  double value = 0.0;
-  VecNorm(vec, NORM_INFINITY, &value);
-  return value;
-}
-
-/// Takes away what solvers have put among PETSc's options: the next test starts without.
-struct OptionScope {
-  OptionScope() { PetscOptionsPush(options()); }
-  ~OptionScope() { PetscOptionsPop(); }
-  OptionScope(const OptionScope&) = delete;
-  OptionScope& operator=(const OptionScope&) = delete;
-
- private:
-  static PetscOptions options() {
-    PetscOptions fresh = nullptr;
-    PetscOptionsCreate(&fresh);
-    return fresh;
-  }
 };
 
 enum class Guess { Zero, AllTouch, Random };

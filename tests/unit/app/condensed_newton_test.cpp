@@ -7,6 +7,7 @@
 #include "material/elastic.hpp"
 #include "solve/bounded_newton.hpp"
 #include "solve/condensed_newton.hpp"
+#include "solver_support.hpp"
 #include "two_blocks.hpp"
 
 #include <cmath>
@@ -85,27 +86,6 @@ struct Fixture {
     problem = std::make_unique<Problem>(*layout, std::move(forms), prescribed);
   }
   ContactTotals totals(Vec u) const { return pair->totals(problem->state_at(u)); }
-};
-
-double largest(Vec vec) {
-  double value = 0.0;
-  VecNorm(vec, NORM_INFINITY, &value);
-  return value;
-}
-
-/// Takes away what solvers have put among PETSc's options: the next test starts without.
-struct OptionScope {
-  OptionScope() { PetscOptionsPush(options()); }
-  ~OptionScope() { PetscOptionsPop(); }
-  OptionScope(const OptionScope&) = delete;
-  OptionScope& operator=(const OptionScope&) = delete;
-
- private:
-  static PetscOptions options() {
-    PetscOptions fresh = nullptr;
-    PetscOptionsCreate(&fresh);
-    return fresh;
-  }
 };
 
 /// Solves and commits, one increment a time. Returns Newton's iterations.

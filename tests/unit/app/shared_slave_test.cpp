@@ -8,6 +8,7 @@
 #include "solve/bounded_newton.hpp"
 #include "solve/condensed_newton.hpp"
 #include "solve/uzawa.hpp"
+#include "solver_support.hpp"
 #include "two_blocks.hpp"
 
 #include <doctest/doctest.h>
@@ -16,21 +17,6 @@ using namespace amontons;
 using namespace amontons::test;
 
 namespace {
-
-/// Takes away what solvers have put among PETSc's options: the next test starts without.
-struct OptionScope {
-  OptionScope() { PetscOptionsPush(options()); }
-  ~OptionScope() { PetscOptionsPop(); }
-  OptionScope(const OptionScope&) = delete;
-  OptionScope& operator=(const OptionScope&) = delete;
-
- private:
-  static PetscOptions options() {
-    PetscOptions fresh = nullptr;
-    PetscOptionsCreate(&fresh);
-    return fresh;
-  }
-};
 
 /// The bottom of the upper block is two surfaces, "upper_bottom" and "right_bottom", that meet in the middle.
 Mesh divided_blocks(int dim, int n) {

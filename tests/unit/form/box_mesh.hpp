@@ -36,6 +36,13 @@ inline const std::vector<ElementCase> element_cases = {
     {ElementType::Tetrahedron4, Space::Solid},          {ElementType::Tetrahedron10, Space::Solid},
     {ElementType::Hexahedron8, Space::Solid},           {ElementType::Hexahedron27, Space::Solid}};
 
+/// Those of them that finite kinematics has: plane stress is not among them.
+inline std::vector<ElementCase> finite_cases() {
+  auto cases = element_cases;
+  std::erase_if(cases, [](const ElementCase& one) { return one.space == Space::PlaneStress; });
+  return cases;
+}
+
 /// Lattice places of all nodes of an element from those of its corners (corner functions of order 1 at the reference
 /// nodes; corners are apart by multiples of the order, so middles fall on the lattice).
 inline std::vector<Lattice> all_nodes(ElementType type, const Corners& corners) {
