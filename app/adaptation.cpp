@@ -33,7 +33,10 @@ const char* quantity_method(AdaptQuantity quantity) {
   case AdaptQuantity::EnergyNorm:
     return "patch recovery (Zienkiewicz and Zhu, 1992), in the energy norm";
   default:
-    return "change of the quantity from pass to pass, continued as if its error fell as that in the energy norm, which "
+    return "influence of the cells' errors on the quantity (dual weighted residual, recovered stresses), without "
+           "their cancelling, or what the quantity has changed since the last mesh if that is more, where it is linear "
+           "elastic, frictionless and not `vi` or with the dual basis; else the "
+           "change of the quantity from pass to pass, continued as if its error fell as that in the energy norm, which "
            "is slower than it does where it is smooth; no bound";
   }
 }
@@ -63,11 +66,26 @@ void Adaptation::set_sizes(double factor) {
   meshing_.sizes = std::make_shared<const SizeField>(samples_, usual_growth);
 }
 
-void Adaptation::see(const Scene& scene, const DiscretizationError& error) {
-  squares_.resize(error.cells.size(), 0.0);
-  near_edge_.resize(error.cells.size(), 0);
-  for (std::size_t c = 0; c < error.cells.size(); ++c) {
-    squares_[c] = std::max(squares_[c], error.cells[c]);
+const FigureError* Adaptation::figure(const FigureErrors& figures) const {
+  const std::string wanted = quantity_name(adapt_.quantity);
+  for (const auto& figure : figures.figures)
+    if (figure.figure == wanted && (!adapt_.pair || figure.pair == *adapt_.pair)) return &figure;
+  return nullptr;
+}
+
+std::optional<double> Adaptation::figure_error(const FigureErrors& figures) const {
+  const auto* found = figure(figures);
+  return found ? std::optional(found->bound) : std::nullopt;
+}
+
+void Adaptation::see(const Scene& scene, const DiscretizationError& error, const FigureErrors& figures) {
+  // Both fall like the square of the error in the energy norm.
+  const auto* goal = figure(figures);
+  const auto& parts = goal ? goal->cells : error.cells;
+  squares_.resize(parts.size(), 0.0);
+  near_edge_.resize(parts.size(), 0);
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    squares_[c] = std::max(squares_[c], parts[c]);
     near_edge_[c] = near_edge_[c] || error.cell_near_edge[c];
   }
   cells_ = simplex_errors(scene.mesh, squares_, near_edge_);
@@ -90,6 +108,12 @@ double Adaptation::value(const PassResult& result) const {
 }
 
 std::optional<double> Adaptation::estimate() const {
+  if (results_.back().figure) {
+    // Blind to how well so few points of contact can follow the pressure at all, so not trusted on one mesh.
+    if (results_.size() == 1) return std::nullopt;
+    const double now = value(results_.back()), before = value(results_[results_.size() - 2]);
+    return std::max(*results_.back().figure, std::abs(now - before) / std::max(std::abs(now), 1e-300));
+  }
   const double mesh_error = results_.back().mesh_error;
   if (adapt_.quantity == AdaptQuantity::EnergyNorm) return mesh_error;
   if (adapt_.quantity == AdaptQuantity::Energy) return mesh_error * mesh_error;
@@ -104,7 +128,8 @@ std::optional<double> Adaptation::estimate() const {
 /// What the error in the energy norm of the next mesh shall be, over that of this one.
 double Adaptation::reduction(std::optional<double> error) const {
   if (!error) return blind_reduction;
-  const double power = adapt_.quantity == AdaptQuantity::Energy ? 0.5 : 1.0;
+  const bool is_square = adapt_.quantity == AdaptQuantity::Energy || results_.back().figure;
+  const double power = is_square ? 0.5 : 1.0;
   return std::clamp(margin * std::pow(adapt_.target_error / *error, power), strongest_reduction, weakest_reduction);
 }
 
@@ -167,7 +192,7 @@ std::string Adaptation::sentence() const {
   std::string line = formatted("pass %zu: %lld unknowns, %s %.6g, ", results_.size(),
                                static_cast<long long>(last.unknowns), quantity_name(adapt_.quantity), value(last));
   line += errors_.back() ? formatted("error about %.2g %%", 100 * *errors_.back())
-                         : std::string("error not yet known: it takes three passes");
+                         : std::string("error not yet known: it takes more passes");
   switch (verdict_) {
   case Verdict::GoesOn:
     return line + "; a finer mesh follows";

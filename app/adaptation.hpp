@@ -5,6 +5,7 @@
 #include "accuracy/mesh_sizes.hpp"
 #include "contact/pair_report.hpp"
 #include "deck.hpp"
+#include "goal_errors.hpp"
 #include "mesh/build.hpp"
 #include "scene.hpp"
 
@@ -21,6 +22,7 @@ struct PassResult {
   double energy = 0.0;              // stored
   std::vector<ContactTotals> pairs; // in the order of the deck
   double mesh_error = 0.0;          // relative, in the energy norm
+  std::optional<double> figure;     // relative error of the quantity where the influence of cells on it is known
   double wall_seconds = 0.0;        // of this pass
 };
 
@@ -37,8 +39,11 @@ class Adaptation {
   /// Throws UserError for a first mesh that is too large: its sizes are the script's.
   bool fits(std::int64_t unknowns);
 
-  /// Takes the error at the end of a step: cells are made for the worst of them. Collective.
-  void see(const Scene& scene, const DiscretizationError& error);
+  /// Takes the error at the end of a step: cells are made for the worst of them. Where the quantity is among the
+  /// figures, by their influence on it; else by their part of the energy norm. Collective.
+  void see(const Scene& scene, const DiscretizationError& error, const FigureErrors& figures);
+  /// The quantity's error among the figures; absent where it is none of them.
+  std::optional<double> figure_error(const FigureErrors& figures) const;
 
   /// The pass is at its end: judges the quantity's error and, where it is too large, chooses the sizes of the next
   /// mesh. Collective.
@@ -53,6 +58,7 @@ class Adaptation {
  private:
   enum class Verdict { GoesOn, Reached, UnknownsSpent, PassesSpent };
 
+  const FigureError* figure(const FigureErrors& figures) const;
   double value(const PassResult& result) const;
   std::optional<double> estimate() const;
   double reduction(std::optional<double> error) const;

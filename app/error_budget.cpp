@@ -75,6 +75,7 @@ DiscretizationError estimate_mesh_error(Scene& scene, Vec unknowns, std::span<co
 
 Json error_budget(const BudgetInput& input) {
   return {{"discretization", discretization(input)},
+          {"figures", to_json(input.figures, input.wall_seconds)},
           {"path", path(input)},
           {"constraint", constraint(input)},
           {"algebra",
@@ -90,6 +91,10 @@ std::string budget_sentence(const Json& budget) {
   if (mesh.contains("share_near_contact_edge"))
     line += formatted(" (%.0f %% of its square at the edge of contact)",
                       100 * mesh.at("share_near_contact_edge").get<double>());
+  for (const auto& [pair, figures] : budget.at("figures").items())
+    if (figures.is_object() && figures.contains("peak_pressure"))
+      line += formatted(", peak pressure of %s %+.2g %%", pair.c_str(),
+                        100 * figures.at("peak_pressure").at("relative").get<double>());
   const auto& steps = budget.at("path").at("relative");
   line += steps.is_null() ? ", increments not measured" : formatted(", increments %.2g %%", 100 * steps.get<double>());
   if (budget.at("constraint").contains("penetration"))

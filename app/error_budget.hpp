@@ -4,6 +4,7 @@
 
 #include "accuracy/discretization_error.hpp"
 #include "certify.hpp"
+#include "goal_errors.hpp"
 #include "path_record.hpp"
 #include "scene.hpp"
 
@@ -23,13 +24,14 @@ struct BudgetInput {
   Scene& scene;
   Vec unknowns;
   const DiscretizationError& mesh_error;
+  const FigureErrors& figures;
   const CertificateRecord& certificate;
   const PathRecord* path;  // null: not measured
   double largest_residual; // of all accepted increments, relative to the force scale
   double wall_seconds;
 };
 
-/// `errors` of the summary: discretization, path, constraint and algebra. Collective.
+/// `errors` of the summary: discretization, figures, path, constraint and algebra. Collective.
 nlohmann::ordered_json error_budget(const BudgetInput& input);
 /// The budget in a sentence.
 std::string budget_sentence(const nlohmann::ordered_json& budget);

@@ -87,6 +87,10 @@ SolveOutcome IncrementSolver::solve(double target) {
   return ladder_->climb(unknowns_, outcome, *trouble_);
 }
 
+bool IncrementSolver::solve_linearized(Vec load, Vec result) {
+  return newton_ && newton_->solve_linearized(accepted_, load, result);
+}
+
 std::unique_ptr<Ladder> IncrementSolver::make_ladder() {
   const auto restart = [this] {
     roll_back();

@@ -69,7 +69,7 @@ class Run {
   void write_checkpoint_file(const Stretch& stretch);
   void progress(const std::string& step, const IncrementReport& report, const std::vector<ContactTotals>& totals);
   void judge_accuracy(nlohmann::ordered_json& summary);
-  void close_pass(const DiscretizationError& mesh_error, nlohmann::ordered_json& summary);
+  void close_pass(const DiscretizationError& mesh_error, const FigureErrors& figures, nlohmann::ordered_json& summary);
   int finish(int status, const std::string& reason);
   std::string file(const char* name) const { return directory_ + "/" + name; }
 
@@ -379,7 +379,8 @@ void Run::accept(const Stretch& stretch, const SolveOutcome& outcome, double pat
   if (ends_step || increments_ % scene_->deck.output.every == 0) write_fields(*scene_, *fields_, unknowns, samples);
   // The state at the very end is estimated in any run.
   if (adaptation_ && ends_step && stretch.step + 1 < scene_->deck.steps.size())
-    adaptation_->see(*scene_, estimate_mesh_error(*scene_, unknowns, samples));
+    adaptation_->see(*scene_, estimate_mesh_error(*scene_, unknowns, samples),
+                     estimate_figure_errors(*scene_, *solver_, samples));
   write_checkpoint_file(stretch);
   largest_residual_ = std::max(largest_residual_, outcome.residual);
   last_samples_ = std::move(samples);
@@ -434,9 +435,11 @@ int Run::march() {
 void Run::judge_accuracy(nlohmann::ordered_json& summary) {
   if (!last_samples_) return;
   const auto mesh_error = estimate_mesh_error(*scene_, solver_->accepted(), *last_samples_);
+  const auto figures = estimate_figure_errors(*scene_, *solver_, *last_samples_);
   summary["errors"] = error_budget({.scene = *scene_,
                                     .unknowns = solver_->accepted(),
                                     .mesh_error = mesh_error,
+                                    .figures = figures,
                                     .certificate = certificate_,
                                     .path = path_ ? &*path_ : nullptr,
                                     .largest_residual = largest_residual_,
@@ -450,17 +453,19 @@ void Run::judge_accuracy(nlohmann::ordered_json& summary) {
   log_.line("  " + budget_sentence(summary["errors"]));
   for (const auto& line : audit_warnings(summary["effects"]))
     log_.line("  warning: " + line);
-  if (adaptation_) close_pass(mesh_error, summary);
+  if (adaptation_) close_pass(mesh_error, figures, summary);
 }
 
 /// Hands what the pass has come to to the adaptation, which chooses the next mesh.
-void Run::close_pass(const DiscretizationError& mesh_error, nlohmann::ordered_json& summary) {
-  adaptation_->see(*scene_, mesh_error);
+void Run::close_pass(const DiscretizationError& mesh_error, const FigureErrors& figures,
+                     nlohmann::ordered_json& summary) {
+  adaptation_->see(*scene_, mesh_error, figures);
   adaptation_->close(comm_, {.unknowns = num_unknowns(),
                              .cells = summary["scene"]["cells"],
                              .energy = ledger_->stored_energy(),
                              .pairs = last_totals_,
                              .mesh_error = mesh_error.relative(),
+                             .figure = adaptation_->figure_error(figures),
                              .wall_seconds = now() - started_});
   summary["adapt"] = adaptation_->to_json();
   log_.line("  " + adaptation_->sentence());

@@ -1,69 +1,19 @@
 #include "accuracy/discretization_error.hpp"
 
 #include "accuracy/facet_cloud.hpp"
-#include "accuracy/patch_recovery.hpp"
+#include "accuracy/recovery_error.hpp"
 #include "fe/node_numbering.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace amontons {
 
 namespace {
 
-using accuracy::PatchRecovery, accuracy::PointRows;
+using accuracy::CellDifference, accuracy::ErrorRule, accuracy::PatchRecovery, accuracy::PointRows;
 
 constexpr std::size_t statuses = 3; // of ContactStatus
-
-/// Where the error of a cell is integrated: a rule that sees polynomials of twice the element's order. That of the
-/// stiffness does, except in simplices, whose points are just those where the stress is best.
-struct ErrorRule {
-  const Tabulation* table;      // the element's functions, for places
-  Eigen::MatrixXd corners;      // functions of order 1 at the points
-  Eigen::MatrixXd continuation; // from values at the points of the stiffness to values here; empty: the same points
-};
-
-/// Continues a field of order p - 1 by least squares: a row for each new point, a column for each old one.
-Eigen::MatrixXd continuation(const Quadrature& from, const Quadrature& to, int order) {
-  const auto polynomial = [order](const Quadrature& rule) {
-    Eigen::MatrixXd terms = Eigen::MatrixXd::Ones(rule.size(), order == 1 ? 1 : 1 + rule.dim);
-    for (int q = 0; q < rule.size(); ++q)
-      for (Eigen::Index i = 1; i < terms.cols(); ++i)
-        terms(q, i) = rule.point(q)[i - 1];
-    return terms;
-  };
-  return polynomial(to) * polynomial(from).completeOrthogonalDecomposition().pseudoInverse();
-}
-
-ErrorRule error_rule(const Tabulation& own) {
-  const int order = element_order(own.type), dim = element_dim(own.type);
-  ErrorRule rule{&own, {}, {}};
-  if (own.rule->size() < accuracy::num_terms(dim, order)) {
-    rule.table = &tabulation(own.type, 2 * order);
-    rule.continuation = continuation(*own.rule, *rule.table->rule, order);
-  }
-  const ElementType corner_type = linear_element(own.type);
-  const Quadrature& points = *rule.table->rule;
-  rule.corners.resize(points.size(), num_nodes(corner_type));
-  std::vector<double> values(num_nodes(corner_type));
-  for (int q = 0; q < points.size(); ++q) {
-    shape_values(corner_type, points.point(q), values);
-    for (std::size_t a = 0; a < values.size(); ++a)
-      rule.corners(q, a) = values[a];
-  }
-  return rule;
-}
-
-/// Volumes that the points of the rule stand for in a cell of volume Σ `own`; on curved sides to first order.
-accuracy::PointColumn volumes(const ErrorRule& rule, std::span<const double> own) {
-  const Eigen::Map<const Eigen::VectorXd> given(own.data(), own.size());
-  if (rule.continuation.size() == 0) return given;
-  const auto& weights = rule.table->rule->weights;
-  const Eigen::Map<const Eigen::VectorXd> parts(weights.data(), weights.size());
-  return parts * (given.sum() / parts.sum());
-}
 
 /// Which cells lie near the edge of contact.
 class EdgeRegion {
@@ -96,23 +46,13 @@ class EdgeRegion {
   std::vector<std::int32_t> found_;
 };
 
-/// Squares of the error and of the solution in cell `c` of a batch.
-std::array<double, 2> squares(const PatchRecovery& recovery, const ErrorRule& rule, const Mesh& mesh,
-                              const PointBatch& batch, std::int32_t c) {
-  const auto points = static_cast<std::size_t>(batch.table->rule->size());
-  const auto own = batch.weights.subspan(c * points, points);
-  PointBatch fine = batch;
-  fine.table = rule.table;
-  PointRows fields = accuracy::point_fields(batch, c);
-  if (rule.continuation.size() > 0) fields = PointRows(rule.continuation.lazyProduct(fields));
-  const PointRows error =
-      recovery.at(*batch.block, batch.first_cell + c, accuracy::point_places(mesh, fine, c), rule.corners) - fields;
-  const accuracy::PointColumn volume = volumes(rule, own);
+/// Squares of the error and of the solution in a cell.
+std::array<double, 2> squares(const CellDifference& cell) {
   const auto work = [&](const PointRows& f) {
     const auto half = f.cols() / 2;
-    return f.leftCols(half).cwiseProduct(f.rightCols(half)).rowwise().sum().dot(volume);
+    return f.leftCols(half).cwiseProduct(f.rightCols(half)).rowwise().sum().dot(cell.volumes);
   };
-  return {work(error), work(fields)};
+  return {work(cell.error), work(cell.fields)};
 }
 
 } // namespace
@@ -176,21 +116,16 @@ DiscretizationError estimate_discretization_error(SolidForm& solid, const Mesh& 
   const PatchRecovery recovery(solid, mesh, state);
   EdgeRegion region(edge);
   DiscretizationError result;
-  std::map<const CellBlock*, std::size_t> first;
-  std::size_t count = 0;
-  for (const auto& block : mesh.blocks) {
-    first[&block] = count;
-    count += static_cast<std::size_t>(block.size());
-  }
-  result.cells.resize(count);
-  result.cell_near_edge.resize(count);
+  const accuracy::CellIndex index(mesh);
+  result.cells.resize(index.size());
+  result.cell_near_edge.resize(index.size());
   std::array<double, 4> sums{}; // squares of error, near_edge, solution, solution_near_edge
   accuracy::each_weighed_batch(solid, state, [&](const PointBatch& batch) {
-    const ErrorRule rule = error_rule(*batch.table);
+    const ErrorRule rule(*batch.table);
     for (std::int32_t c = 0; c < batch.num_cells; ++c) {
-      const auto [error, solution] = squares(recovery, rule, mesh, batch, c);
+      const auto [error, solution] = squares(difference(recovery, rule, mesh, batch, c));
       const bool near = region.meets(mesh, state.displacement, batch.block->cell(batch.first_cell + c));
-      const std::size_t cell = first.at(batch.block) + static_cast<std::size_t>(batch.first_cell + c);
+      const std::size_t cell = index(batch, c);
       result.cells[cell] = error;
       result.cell_near_edge[cell] = near;
       sums[0] += error;

@@ -21,6 +21,8 @@ class KeptFactorization {
 
   /// The matrix of the SNES holds another tangent.
   void tangent_changed() { ++tangent_; }
+  /// The next system is no Newton step, which may be rough at first: solve it to the end.
+  void want_accuracy() { solved_tangent_ = tangent_; }
 
   /// Since begin().
   int factorizations() const { return factorizations_; }

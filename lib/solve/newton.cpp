@@ -319,21 +319,49 @@ Trouble Newton::trouble() const {
   return trouble;
 }
 
+/// With the tangent in matrix_.
+bool Newton::solve_linear(Vec load, Vec result) {
+  KSP solver = nullptr;
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  AMT_PETSC(SNESGetKSP(snes_, &solver));
+  AMT_PETSC(KSPSetOperators(solver, matrix_, matrix_));
+  AMT_PETSC(KSPSolve(solver, load, result));
+  AMT_PETSC(KSPGetConvergedReason(solver, &reason));
+  return reason > 0;
+}
+
 /// Where the supports move a body that must not be strained by their motion alone; see Problem::begin_prediction.
 void Newton::predict(Vec unknowns) {
   VecHandle load = problem_.layout().new_vector(), step = problem_.layout().new_vector();
   if (problem_.begin_prediction(unknowns, matrix_, load)) {
-    KSP solver = nullptr;
-    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-    AMT_PETSC(SNESGetKSP(snes_, &solver));
-    AMT_PETSC(KSPSetOperators(solver, matrix_, matrix_));
     if (kept_factorization_) kept_factorization_->tangent_changed();
-    AMT_PETSC(KSPSolve(solver, load, step));
-    AMT_PETSC(KSPGetConvergedReason(solver, &reason));
     ++factorizations_;
-    if (reason < 0) AMT_PETSC(VecSet(step, 0.0)); // the solve from there will tell what is wrong
+    if (!solve_linear(load, step)) AMT_PETSC(VecSet(step, 0.0)); // the solve from there will tell what is wrong
   }
   problem_.end_prediction(unknowns, step);
+}
+
+bool Newton::solve_linearized(Vec unknowns, Vec load, Vec result) {
+  const Phase phase("linear solver");
+  const bool is_new = problem_.tangent(unknowns, matrix_);
+  if (kept_factorization_) {
+    kept_factorization_->begin();
+    if (is_new) kept_factorization_->tangent_changed();
+    kept_factorization_->want_accuracy();
+  }
+  // Where a tolerance is one of forces, it is that of the scene: a load of their size is solved for as well as they
+  // are.
+  PetscReal norm = 0.0;
+  AMT_PETSC(VecNorm(load, NORM_2, &norm));
+  AMT_PETSC(VecSet(result, 0.0));
+  if (norm == 0.0) return true;
+  const double scale = problem_.force_scale() > 0.0 ? problem_.force_scale() / norm : 1.0;
+  AMT_PETSC(VecScale(load, scale));
+  const bool is_solved = solve_linear(load, result);
+  AMT_PETSC(VecScale(load, 1.0 / scale));
+  AMT_PETSC(VecScale(result, 1.0 / scale));
+  if (kept_factorization_) kept_factorization_->rethrow();
+  return is_solved;
 }
 
 SolveOutcome Newton::solve(Vec unknowns) {

@@ -87,6 +87,10 @@ class Newton {
   /// is convex; |F|² where steps are not shortened otherwise; and |K⁻¹ F|, the natural one (P. Deuflhard, Newton
   /// Methods for Nonlinear Problems (2004), 3.3), where |F|² is in use already.
   void set_steps(const StepLength& steps);
+  /// Displacements under `load` (zero in prescribed equations) in the problem linearised at `unknowns`; for problems
+  /// with a symmetric tangent. A back-substitution where a factorization is at hand. False if the linear solver
+  /// failed. Collective.
+  bool solve_linearized(Vec unknowns, Vec load, Vec result);
   /// What went on in the last solve, which did not converge. Collective.
   Trouble trouble() const;
   const StatusWatch& watch() const { return watch_; }
@@ -99,6 +103,7 @@ class Newton {
   static PetscErrorCode search_energy(SNESLineSearch search, void* self);
   void observe(double norm);
   void predict(Vec unknowns);
+  bool solve_linear(Vec load, Vec result);
 
   Problem& problem_;
   std::function<bool()> interrupted_;

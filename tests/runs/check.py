@@ -180,7 +180,7 @@ def accuracy(case):
         case.expect(f"refine {refine}: the log has the errors in a line", text.count("errors: mesh about") == 1, text)
         summary = found[refine] = json.loads((out / "summary.json").read_text())
         errors = summary["errors"]
-        case.expect(f"refine {refine}: all kinds of errors", list(errors) == ["discretization", "path", "constraint", "algebra"])
+        case.expect(f"refine {refine}: all kinds of errors", list(errors) == ["discretization", "figures", "path", "constraint", "algebra"])
         mesh = errors["discretization"]
         case.expect(f"refine {refine}: a part of the mesh's error", 0 < mesh["share_near_contact_edge"] < 1, mesh)
         case.expect(f"refine {refine}: its cost is timed", 0 < mesh["cost"]["seconds"] < summary["resources"]["wall_seconds"])

@@ -175,8 +175,36 @@ def second_order_3d(bench):
     check(bench, "hertz_3d", {"mesh.order": 2, "mesh.parameters.n": 4, "steps.0.increments": 1}, 0.02, 0.02, 0.01)
 
 
+def figures_2d(bench):
+    """The estimated errors of force and peak pressure under a prescribed approach, against the values with cells of order 2
+    (whose own errors are a hundredth): with their signs, for each formulation that has them, on 1 and 2 ranks."""
+    def run(order, enforce, ranks=2):
+        changes = {"boundary.3": {"on": "indenter_cut", "displacement": {"x": 0, "y": "-0.02*t"}}, "steps.0.increments": 1,
+                   "mesh.parameters.h": 0.1, "mesh.order": order, "contact.0.enforce": enforce}
+        summary = bench.run("hertz_2d", changes, ranks).summary
+        contact = summary["contact"]["interface"]
+        return contact["force"][1], contact["max_pressure"], summary["errors"]["figures"]["interface"]
+
+    force, peak, _ = run(2, {"semismooth": {}})
+    for enforce in ({"semismooth": {}}, {"uzawa": {}}, {"penalty": {}}):
+        name = next(iter(enforce))
+        coarse_force, coarse_peak, errors = run(1, enforce)
+        ratio = errors["force"]["relative"] / (force / coarse_force - 1.0)
+        bench.below(f"{name}: estimated / true error of the force, inverse", 1.0 / ratio if ratio > 0.0 else math.inf, 2.0)
+        bench.below(f"{name}: estimated / true error of the force", ratio, 2.0)
+        # Not the very peak, but the mean of the pressure around it.
+        ratio = errors["peak_pressure"]["relative"] / (peak / coarse_peak - 1.0)
+        bench.below(f"{name}: estimated / true error of the peak pressure, inverse", 1.0 / ratio if ratio > 0.0 else math.inf, 2.0)
+        bench.below(f"{name}: estimated / true error of the peak pressure", ratio, 2.0)
+        if name == "semismooth":
+            alone = run(1, enforce, 1)[2]
+            for figure in ("force", "peak_pressure"):
+                bench.close(f"{figure} on 1 rank", alone[figure]["relative"], errors[figure]["relative"], 1e-6)
+
+
 CASES = {
     "hertz_2d": {
+        "figures": figures_2d,
         "reference": reference_2d,
         "convergence": convergence_2d,
         "second_order": second_order_2d,

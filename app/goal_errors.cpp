@@ -1,0 +1,219 @@
+// Derivation. Let f_c(x) be the contact forces at the nodes, f_b those of the solid, K = K_b + K_c the tangent, and w a
+// displacement that moves slave nodes only: by the unit vector d along the pair's force, or by d times a function that
+// is 1 at the peak of the pressure and 0 where it has fallen to half. Then Q = w · f_c is the force along d, or the
+// pressure around the peak times a fixed area. Its
+// derivative is K_cᵀ w, so its influence field is
+//   z = K⁻¹ K_c w = w − K⁻¹ K_b w
+// (K symmetric, prescribed components zero), and K_b w are the forces of the linear solid at the displacement w: no
+// derivative of the contact form is needed. Between nodes that carry no other loads Q is −w · f_b(u) = −u · K_b w.
+#include "goal_errors.hpp"
+
+#include "accuracy/goal_error.hpp"
+#include "base/timer.hpp"
+#include "math/reference_element.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace amontons {
+
+namespace {
+
+/// Pairs beyond which the figures are too many to ask for each unasked.
+constexpr std::size_t most_pairs = 8;
+
+using Direction = std::array<double, 3>;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::string reason_against(const Scene& scene) {
+  if (scene.contacts.empty()) return "no contact";
+  if (!scene.bulk->tangent_is_constant()) return "only for linear elastic solids in small kinematics";
+  if (scene.bounds || scene.conditions)
+    return "not for `vi` and `semismooth` with the dual basis, which solve transformed systems";
+  if (!scene.problem->tangent_is_symmetric()) return "not with friction: figures then depend on the whole path";
+  if (scene.contacts.size() > most_pairs) return "more than " + std::to_string(most_pairs) + " pairs";
+  return "";
+}
+
+/// Sum over ranks of the pair's traction; null vector where nothing presses.
+Direction direction_of_force(MPI_Comm comm, const ContactSamples& samples) {
+  Direction force{};
+  for (std::size_t q = 0; q < samples.size(); ++q)
+    for (std::size_t c = 0; c < 3; ++c)
+      force[c] += samples.weight[q] * samples.pressure[q] * samples.normal[q][c];
+  MPI_Allreduce(MPI_IN_PLACE, force.data(), 3, MPI_DOUBLE, MPI_SUM, comm);
+  const double size = std::hypot(force[0], force[1], force[2]);
+  for (double& component : force)
+    component = size > 0.0 ? component / size : 0.0;
+  return force;
+}
+
+/// How much a corner of the slave surface counts for the peak: 1 where the pressure is largest, down to 0 at half of
+/// it, so that the figure is one of the solution and not of a node. By local mesh node, the same on all ranks; empty
+/// where nothing presses.
+std::vector<double> peak_weights(const Mesh& mesh, const ContactPair& pair, const ContactSamples& samples) {
+  double largest = 0.0;
+  for (const double pressure : samples.nodal_pressure)
+    largest = std::max(largest, pressure);
+  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, mesh.comm);
+  if (largest == 0.0) return {};
+  const auto& nodes = mesh.node_groups.at(pair.slave);
+  const NodeSpace space(mesh, {{pair.slave, nodes}});
+  std::vector<double> weights(mesh.num_local(), 0.0);
+  for (std::size_t i = 0; i < samples.nodes.size(); ++i)
+    weights[samples.nodes[i]] = std::max(0.0, 2.0 * samples.nodal_pressure[i] / largest - 1.0);
+  std::vector<std::vector<double>> values(1);
+  for (const auto node : nodes)
+    values[0].push_back(node < mesh.num_owned ? weights[node] : 0.0);
+  const VecHandle all = space.new_vector();
+  space.add(values, all);
+  space.gather(all, values);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    weights[nodes[i]] = values[0][i];
+  return weights;
+}
+
+/// The displacement w of one figure under assembly.
+class Lifting {
+ public:
+  Lifting(const Scene& scene, const ContactPair& pair)
+      : scene_(scene), facets_(scene.mesh.surfaces.at(pair.slave)), vector_(scene.layout->new_vector()) {}
+
+  /// `direction` at all slave nodes.
+  void move_all(const Direction& direction) {
+    for (const auto node : facets_.nodes)
+      set(node, direction, 1.0);
+  }
+
+  /// `direction` times the function of order 1 that has these values at the corners of facets.
+  void move_by(std::span<const double> corner_values, const Direction& direction) {
+    for (std::int32_t f = 0; f < facets_.size(); ++f) {
+      const auto nodes = facets_.facet(f);
+      const ElementType type = facets_.types[f], corners = linear_element(type);
+      const auto dim = static_cast<std::size_t>(element_dim(type));
+      std::vector<double> shape(num_nodes(corners));
+      for (int b = 0; b < num_nodes(type); ++b) {
+        shape_values(corners, reference_nodes(type).subspan(b * dim, dim), shape);
+        double value = 0.0;
+        for (int a = 0; a < num_nodes(corners); ++a)
+          value += shape[a] * corner_values[nodes[a]];
+        set(nodes[b], direction, value);
+      }
+    }
+  }
+
+  /// Collective.
+  Vec finish() {
+    AMT_PETSC(VecAssemblyBegin(vector_));
+    AMT_PETSC(VecAssemblyEnd(vector_));
+    free_only(vector_);
+    return vector_;
+  }
+
+  /// Takes prescribed components out.
+  void free_only(Vec vector) const {
+    VecArray values(vector);
+    const PetscInt first = scene_.layout->first_equation();
+    for (PetscInt i = 0; i < values.size(); ++i)
+      if (scene_.problem->is_prescribed(first + i)) values[i] = 0.0;
+  }
+
+ private:
+  void set(std::int32_t node, const Direction& direction, double value) {
+    for (int c = 0; c < scene_.mesh.dim; ++c)
+      AMT_PETSC(VecSetValue(vector_, scene_.layout->equation(node, c), value * direction[c], INSERT_VALUES));
+  }
+  const Scene& scene_;
+  const FacetSet& facets_;
+  VecHandle vector_;
+};
+
+/// K_b w. Collective.
+VecHandle solid_forces(Scene& scene, Vec unknowns) {
+  VecHandle forces = scene.layout->new_vector();
+  const auto state = scene.problem->state_at(unknowns);
+  Residual residual(*scene.layout, forces);
+  scene.bulk->add_residual(state, residual);
+  residual.finish();
+  return forces;
+}
+
+/// A figure whose influence is known and whose error is not yet.
+struct Asked {
+  std::string pair;
+  const char* name;
+  double value;                  // w · f_c
+  std::vector<double> influence; // num_local x dim
+};
+
+/// Adds the figure of this lifting; false where the linear solver fails. Collective.
+bool ask(Scene& scene, IncrementSolver& solver, Lifting& lifting, const std::string& pair, const char* name,
+         std::vector<Asked>& asked) {
+  const Vec lift = lifting.finish();
+  VecHandle forces = solid_forces(scene, lift), response = scene.layout->new_vector();
+  PetscScalar work = 0.0;
+  AMT_PETSC(VecDot(forces, solver.accepted(), &work));
+  if (work == 0.0) return true;
+  lifting.free_only(forces);
+  if (!solver.solve_linearized(forces, response)) return false;
+  AMT_PETSC(VecAYPX(response, -1.0, lift));
+  const auto field = scene.problem->state_at(response).displacement;
+  asked.push_back({pair, name, -work, {field.begin(), field.end()}});
+  return true;
+}
+
+} // namespace
+
+FigureErrors estimate_figure_errors(Scene& scene, IncrementSolver& solver, std::span<const ContactSamples> samples) {
+  FigureErrors errors;
+  errors.reason = reason_against(scene);
+  if (!errors.reason.empty()) return errors;
+  const Phase phase("error estimate");
+  const double begun = now();
+  std::vector<Asked> asked;
+  for (std::size_t i = 0; i < scene.contacts.size() && errors.reason.empty(); ++i) {
+    const auto& pair = scene.contacts[i]->pair();
+    const auto direction = direction_of_force(scene.mesh.comm, samples[i]);
+    const auto weights = peak_weights(scene.mesh, pair, samples[i]);
+    if (weights.empty()) continue;
+    Lifting everywhere(scene, pair), around(scene, pair);
+    everywhere.move_all(direction);
+    around.move_by(weights, direction);
+    if (!ask(scene, solver, everywhere, pair.name, "force", asked) ||
+        !ask(scene, solver, around, pair.name, "peak_pressure", asked))
+      errors.reason = "the linear solver failed";
+  }
+  std::vector<std::vector<double>> influences;
+  for (auto& figure : asked)
+    influences.push_back(std::move(figure.influence));
+  auto goals = estimate_goal_errors(*scene.bulk, scene.mesh, scene.problem->state_at(solver.accepted()), influences);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const double size = std::abs(asked[i].value);
+    errors.figures.push_back({.pair = asked[i].pair,
+                              .figure = asked[i].name,
+                              .relative = goals[i].error / asked[i].value,
+                              .bound = goals[i].bound / size,
+                              .cells = std::move(goals[i].cells)});
+    for (double& cell : errors.figures.back().cells)
+      cell /= size;
+  }
+  errors.seconds = now() - begun;
+  return errors;
+}
+
+nlohmann::ordered_json to_json(const FigureErrors& errors, double run_seconds) {
+  nlohmann::ordered_json json;
+  for (const auto& figure : errors.figures)
+    json[figure.pair][figure.figure] = {{"relative", figure.relative}, {"without_cancelling", figure.bound}};
+  if (!errors.reason.empty()) json["reason"] = "not estimated: " + errors.reason;
+  json["meaning"] = "exact less computed figure over the computed one, estimated: error of the stress weighed by the "
+                    "influence of each cell on the figure (dual weighted residual, recovered stresses); "
+                    "peak_pressure: the weighted mean of the pressure where it is more than half of its largest";
+  json["cost"] = {{"seconds", errors.seconds}, {"share_of_time", errors.seconds / std::max(run_seconds, 1e-12)}};
+  return json;
+}
+
+} // namespace amontons

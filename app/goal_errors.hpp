@@ -1,0 +1,34 @@
+// Errors of the figures that are asked for most, each pair's force and largest pressure, from the influence of every
+// cell on them: `errors.figures` of the summary.
+#pragma once
+
+#include "increment_solver.hpp"
+#include "scene.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace amontons {
+
+/// A figure of the last accepted state with what the mesh makes of it.
+struct FigureError {
+  std::string pair, figure;  // "force" (its size), "peak_pressure" (mean of the pressure above half of the largest)
+  double relative = 0.0;     // (exact − computed) / computed, estimated, with its sign
+  double bound = 0.0;        // the same if the parts of the cells did not cancel
+  std::vector<double> cells; // |part| of this rank's cells, over the figure
+};
+
+struct FigureErrors {
+  std::vector<FigureError> figures;
+  std::string reason; // why there are none, in words; else empty
+  double seconds = 0.0;
+};
+
+/// `samples`: of that state, one a pair. Where the solid is linear elastic, nothing rubs, and a linear system with the
+/// tangent is a matter of a back-substitution; elsewhere it says why not. Collective.
+FigureErrors estimate_figure_errors(Scene& scene, IncrementSolver& solver, std::span<const ContactSamples> samples);
+
+nlohmann::ordered_json to_json(const FigureErrors& errors, double run_seconds);
+
+} // namespace amontons
