@@ -44,6 +44,8 @@ void declare(CLI::App& app, CommandLine& line) {
   auto* schema = app.add_subcommand("schema", "Print the JSON Schema of decks, for editors");
   auto* describe = app.add_subcommand("describe", "Manual page of a deck key, or an overview of all keys");
   describe->add_option("KEY", line.key, "Key with dots, such as contact.enforce.uzawa.alpha")->type_name("");
+  // Never parsed here: main hands it over.
+  app.add_subcommand("plan", "Propose mesh, increments and formulation for an error; `amontons plan --help`");
   for (auto* command : {check, schema, describe})
     command->set_help_flag("--help", "Show this text");
   check->callback([&line] { line.check = true; });
@@ -89,7 +91,7 @@ int carry_out(MPI_Comm comm, const CommandLine& line, bool is_root, bool petsc_h
   }
   on_root(comm, [&] {
     check_run_arguments(line.run);
-    const auto command = nearest_match(line.run.deck, {"check", "schema", "describe"});
+    const auto command = nearest_match(line.run.deck, {"check", "schema", "describe", "plan"});
     if (!command.empty() && !std::filesystem::exists(line.run.deck))
       throw UserError("'" + line.run.deck + "' is neither a deck nor a command. Did you mean '" + command + "'?");
   });

@@ -1,6 +1,7 @@
 // The program: PETSc and MPI around one command.
 #include "base/petsc.hpp"
 #include "commands.hpp"
+#include "hand_over.hpp"
 
 #include <cstdlib>
 #include <iostream>
@@ -21,6 +22,7 @@ int give_up(const std::exception& error) {
 } // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string(argv[1]) == "plan") return amontons::hand_over_to_script("plan", {argv + 2, argv + argc});
   // SCOTCH 7 orders with all cores and so differently at each run: the last digits of results would change. One thread
   // a rank gives the same bits each time.
   setenv("SCOTCH_PTHREAD_NUMBER", "1", 0);

@@ -225,9 +225,9 @@ def plan(case):
     for deck, words, error in ((with_growth(case), ("--size", "h,growth"), 0.06),
                                (TOP / "inputs/cattaneo_mindlin_2d/cattaneo_mindlin_2d.yaml", (), 0.06)):
         new, out = case.folder / f"{deck.stem}_planned.yaml", case.folder / deck.stem
-        status, text = case.run("plan", deck, *words, "--error", error, "--write", new, "--out", out, "--program",
-                                case.program)
-        case.expect(f"{deck.stem}: planned", status == 0, text)
+        done = subprocess.run([case.program, "plan", *map(str, (deck, *words, "--error", error, "--write", new, "--out", out))],
+                              capture_output=True, text=True, check=False, timeout=250, cwd=case.folder)
+        case.expect(f"{deck.stem}: planned", done.returncode == 0, done.stdout + done.stderr)
         planned = json.loads((out / "plan.json").read_text(encoding="utf-8"))
         summary = run_deck(case, new)
         found = {"error": summary["errors"]["discretization"]["relative"],
@@ -273,6 +273,9 @@ def wrong_plan(case):
         case.expect(f"{name}: status 2 and a message", status == 2 and expected in text and "Traceback" not in text,
                     f"{status} {text}")
         case.expect(f"{name}: no deck", not new.exists())
+    done = subprocess.run(["mpirun", "--oversubscribe", "-n", "2", case.program, "plan", str(deck)], capture_output=True, text=True, check=False,
+                          timeout=100)
+    case.expect("under mpirun: refused", done.returncode == 2 and "Call it without mpirun" in done.stderr, done.stderr)
 
 
 class Page(html.parser.HTMLParser):
