@@ -36,7 +36,7 @@ void move_nodes(Case& scene, const std::array<double, 3>& place, int body, const
 TEST_CASE("certify: the exact solution passes with values at rounding") {
   for (const int dim : {2, 3}) {
     const Certificate certificate = compressed_blocks(MPI_COMM_WORLD, dim).certify();
-    CHECK(certificate.items.size() == 14);
+    CHECK(certificate.items.size() == 15);
     CHECK(certificate.passed());
     CHECK(failures(certificate).empty());
     for (const auto& one : certificate.items) {
@@ -187,8 +187,8 @@ TEST_CASE("certify: what is not a number passes nothing") {
   Case scene = compressed_blocks(MPI_COMM_WORLD, 2);
   scene.displacement[0] = std::numeric_limits<double>::quiet_NaN();
   const Certificate certificate = scene.certify();
-  CHECK(certificate.items.size() == 14);
-  CHECK(failures(certificate).size() == 14);
+  CHECK(certificate.items.size() == 15);
+  CHECK(failures(certificate).size() == 15);
 }
 
 TEST_CASE("certify: refuses arrays that do not fit") {
@@ -265,4 +265,64 @@ TEST_CASE("certify: rigid masters") {
   CHECK(item(scene.certify(), "penetration").value == 0.0);
   CHECK(item(scene.certify(), "missed_contact").value == doctest::Approx(0.05 / 0.2475).epsilon(1e-2));
   CHECK(item(scene.certify(), "missed_contact").where.find("rigid master of pair 'floor'") != std::string::npos);
+}
+
+TEST_CASE("certify: points under pressure that have slid off their master, in both kinematics") {
+  for (const int dim : {2, 3})
+    for (const auto kinematics : {Kinematics::Small, Kinematics::Finite})
+      for (const double slide : {0.0, 0.01, 0.3, 5.0}) {
+        CAPTURE(dim);
+        CAPTURE(slide);
+        Case scene = compressed_blocks(MPI_COMM_WORLD, dim);
+        scene.kinematics = kinematics;
+        std::vector<std::uint8_t> of_upper(scene.mesh.num_local(), 0);
+        for (const auto& block : scene.mesh.blocks)
+          if (block.body == 1)
+            for (const auto node : block.nodes)
+              of_upper[node] = 1;
+        for (std::int32_t node = 0; node < scene.mesh.num_local(); ++node)
+          if (of_upper[node]) scene.displacement[std::size_t(node) * dim] += slide;
+        // Facets of the slave are 1/2 long, the master ends at x = 1.
+        double sums[2] = {};
+        const auto& samples = scene.samples[0];
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+          const double beside = std::clamp((samples.place[i][0] + slide - 1.0) / 0.5, 0.0, 1.0);
+          sums[0] += samples.weight[i] * beside;
+          sums[1] += samples.weight[i];
+        }
+        MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+        const Certificate certificate = scene.certify();
+        const auto& left = item(certificate, "left_master");
+        CHECK(left.value == doctest::Approx(sums[0] / sums[1]).epsilon(1e-9));
+        CHECK(left.passed == (slide < 0.1));
+        if (left.passed) continue;
+        CHECK(left.where.find("pair 'interface': points under pressure have left the master") == 0);
+        CHECK((left.where.find("use kinematics: finite") != std::string::npos) == (kinematics == Kinematics::Small));
+        if (kinematics == Kinematics::Small) CHECK(failures(certificate) == Names{"left_master"});
+      }
+}
+
+TEST_CASE("certify: a rigid plane has no end, under a ball one can slide away") {
+  Case scene;
+  scene.mesh = block_mesh(MPI_COMM_WORLD, 2, {{"block", {0, 0, 0}, {0.1, 0.1, 0}, {2, 2, 1}}});
+  scene.space = Space::PlaneStress;
+  scene.external.assign(scene.mesh.coordinates.size(), 0.0);
+  const double slide = 0.5, radius = 1.0;
+  displace(scene, [&](const auto&) { return std::array{slide, 0.0, 0.0}; });
+  scene.samples = {uniform_samples(scene.mesh, "block_bottom", 1.0, {0, 1, 0})};
+  scene.pairs = {{"floor", "block_bottom", MovedShape{RigidPlane{{0, 0, 0}, {0, 1, 0}}, {}}}};
+  CHECK(item(scene.certify(), "left_master").value < 1e-15);
+
+  scene.pairs[0].master = MovedShape{RigidSphere{{0.05, -radius, 0.0}, radius}, {}};
+  double sums[2] = {};
+  const auto& samples = scene.samples[0];
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    // The nearest place of the disc, along the bottom of the block.
+    const double x = samples.place[i][0] + slide - 0.05, distance = std::hypot(x, radius);
+    sums[0] += samples.weight[i] * std::min(1.0, x * (1.0 - radius / distance) / 0.05);
+    sums[1] += samples.weight[i];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  CHECK(item(scene.certify(), "left_master").value == doctest::Approx(sums[0] / sums[1]).epsilon(1e-9));
+  CHECK_FALSE(item(scene.certify(), "left_master").passed);
 }
