@@ -150,6 +150,7 @@ void add_forces(const ContactSamples& samples, const FacetSet& slave, std::span<
 struct PairSums {
   double over_gaps = 0.0, force = 0.0, beside = 0.0;
 };
+constexpr int num_sums = sizeof(PairSums) / sizeof(double);
 
 /// `hits`, `now`: what the points found where they were searched for, and where they are. `farthest`: beside the
 /// master.
@@ -166,13 +167,13 @@ void add_pressures(const ContactSamples& samples, std::span<const SlavePoint> po
   }
 }
 
-/// Where points have left their master, and what to do about it.
-std::string left_words(Kinematics kinematics, double distance, const std::string& where) {
+/// Where points have left their master, and what to do about it. `farthest`: in facets.
+std::string left_words(Kinematics kinematics, const Worst& farthest) {
   std::ostringstream words;
   words.precision(2);
-  words << ": points under pressure have left the master, the farthest, from " << where << ", by ";
-  if (distance < 1.0)
-    words << distance << " facets";
+  words << ": points under pressure have left the master, the farthest, from " << farthest.where << ", by ";
+  if (farthest.value < 1.0)
+    words << farthest.value << " facets";
   else
     words << "a facet or more";
   if (kinematics == Kinematics::Small)
@@ -211,7 +212,7 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
     add_forces(samples, mesh.surfaces.at(names.slave), all.points, hits,
                std::holds_alternative<MovedShape>(names.master), pivot, forces);
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(3 * count), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(count) * num_sums, MPI_DOUBLE, MPI_SUM, mesh.comm);
   double total = 0.0;
   for (const auto& sum : sums)
     total += sum.force;
@@ -219,10 +220,11 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
     const double scale = std::max(sums[pair].force, force_floor * total);
     const auto name = "pair '" + input.pairs[pair].name + "'";
     if (sums[pair].over_gaps != 0.0) result.complementarity.offer(sums[pair].over_gaps / scale, [&] { return name; });
-    const auto [distance, where] = over_ranks(mesh.comm, std::move(farthest[pair]));
-    if (sums[pair].beside != 0.0)
-      result.left_master.offer(sums[pair].beside / scale,
-                               [&] { return name + left_words(input.kinematics, distance, where); });
+    const auto far = over_ranks(mesh.comm, std::move(farthest[pair]));
+    const double left = sums[pair].beside == 0.0 ? 0.0 : sums[pair].beside / scale;
+    result.left_master.offer(left, [&] {
+      return name + (left <= input.tolerances.complementarity ? "" : left_words(input.kinematics, far));
+    });
   }
   result.penetration = over_ranks(mesh.comm, std::move(result.penetration));
   return result;
