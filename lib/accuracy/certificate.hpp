@@ -95,10 +95,12 @@ struct Certificate {
   bool passed() const;
 };
 
-/// left_master: Σ |pressure| times the distance, in facets and at most one, that a point is beside its master now, over
-/// the force of the pair. Small kinematics keeps the pairing of the reference configuration, so that a point which has
-/// slid off the master's end goes on pressing on it; the reference place moved by u_slave − u_master is where it is
-/// now. friction_cone: the pair's law is asked anew for its limit at the pressure and slip claimed; shear beyond it (in
+/// left_master: Σ |pressure| times the distance, in facets and at most one, by which a point has come to be beside its
+/// master since the search, over the force of the pair. Small kinematics keeps the pairing of the reference
+/// configuration, so that a point which has slid off the master's end goes on pressing on it; the reference place moved
+/// by u_slave − u_master is where it is now. Zero in finite kinematics, where pressure beyond the master is a matter of
+/// complementarity.
+/// friction_cone: the pair's law is asked anew for its limit at the pressure and slip claimed; shear beyond it (in
 /// slip: off it), shear out of the tangent plane and shear without contact, relative to the pair's largest limit or
 /// shear. slip: Σ |shear| |Δg_t − slip| over Σ |shear| times the largest displacement increment in the scene, with
 /// Δg_t the tangential motion in this increment that a fresh search finds: what is said to stick must not move and what

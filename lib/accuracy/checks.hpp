@@ -7,7 +7,7 @@
 namespace amontons::accuracy {
 
 /// Gaps of the pairs: penetration relative to the facet size; relative to the force of the pair Σ |p g| / h, and Σ |p|
-/// times the distance, in facets and at most one, that a point is now beside the master.
+/// times the distance, in facets and at most one, by which a point has come to be beside the master.
 struct GapChecks {
   Worst penetration;
   Worst complementarity;

@@ -81,7 +81,8 @@ std::vector<MasterHit> find_hits(const CertificateInput& input, const Placement&
 }
 
 /// What the points find where they are now. Small kinematics has searched in the reference configuration; a point now
-/// stands over the reference master where its motion relative to its master has taken it.
+/// stands over the reference master where its motion relative to its master has taken it. Finite kinematics has
+/// searched where the points are.
 std::vector<MasterHit> find_now(const CertificateInput& input, const Placement& placement,
                                 const ContactPairNames& names, std::span<const SlavePoint> points,
                                 std::span<const MasterHit> hits) {
@@ -153,14 +154,16 @@ struct PairSums {
 constexpr int num_sums = sizeof(PairSums) / sizeof(double);
 
 /// `hits`, `now`: what the points found where they were searched for, and where they are. `farthest`: beside the
-/// master.
+/// master now and not before (a node of a slave that sticks out of its master from the start stands for a force over
+/// it).
 void add_pressures(const ContactSamples& samples, std::span<const SlavePoint> points, std::span<const MasterHit> hits,
                    std::span<const MasterHit> now, int dim, PairSums& sums, Worst& farthest) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double force = std::abs(samples.pressure[i]) * samples.weight[i], size = points[i].size;
     sums.force += force;
     if (force == 0.0) continue;
-    const double beside = facets_beside(now[i], samples.normal[i], size);
+    const double before = facets_beside(hits[i], samples.normal[i], size);
+    const double beside = std::max(0.0, facets_beside(now[i], samples.normal[i], size) - before);
     sums.over_gaps += force * gap_under_pressure(hits[i], size) / size;
     sums.beside += force * beside;
     farthest.offer(beside, [&] { return place_text(std::span(samples.place[i]).first(dim)); });
@@ -168,7 +171,7 @@ void add_pressures(const ContactSamples& samples, std::span<const SlavePoint> po
 }
 
 /// Where points have left their master, and what to do about it. `farthest`: in facets.
-std::string left_words(Kinematics kinematics, const Worst& farthest) {
+std::string left_words(const Worst& farthest) {
   std::ostringstream words;
   words.precision(2);
   words << ": points under pressure have left the master, the farthest, from " << farthest.where << ", by ";
@@ -176,9 +179,8 @@ std::string left_words(Kinematics kinematics, const Worst& farthest) {
     words << farthest.value << " facets";
   else
     words << "a facet or more";
-  if (kinematics == Kinematics::Small)
-    words << "; small kinematics carries them on as if it were still there: use kinematics: finite, or a master that"
-             " reaches as far as the motion";
+  words << "; small kinematics carries them on as if it were still there: use kinematics: finite, or a master that"
+           " reaches as far as the motion";
   return words.str();
 }
 
@@ -222,9 +224,8 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
     if (sums[pair].over_gaps != 0.0) result.complementarity.offer(sums[pair].over_gaps / scale, [&] { return name; });
     const auto far = over_ranks(mesh.comm, std::move(farthest[pair]));
     const double left = sums[pair].beside == 0.0 ? 0.0 : sums[pair].beside / scale;
-    result.left_master.offer(left, [&] {
-      return name + (left <= input.tolerances.complementarity ? "" : left_words(input.kinematics, far));
-    });
+    result.left_master.offer(left,
+                             [&] { return name + (left <= input.tolerances.complementarity ? "" : left_words(far)); });
   }
   result.penetration = over_ranks(mesh.comm, std::move(result.penetration));
   return result;
