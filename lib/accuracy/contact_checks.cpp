@@ -152,21 +152,28 @@ struct PairSums {
   double over_gaps = 0.0, force = 0.0, beside = 0.0;
 };
 constexpr int num_sums = sizeof(PairSums) / sizeof(double);
+/// Where Σ |p g| w / h has its largest part, and the point that has come to be farthest beside the master.
+struct PairPlaces {
+  Worst gap, beside;
+};
 
-/// `hits`, `now`: what the points found where they were searched for, and where they are. `farthest`: beside the
-/// master now and not before (a node of a slave that sticks out of its master from the start stands for a force over
-/// it).
+/// `hits`, `now`: what the points found where they were searched for, and where they are. Beside the
+/// master counts what is so now and was not before (a node of a slave that sticks out of its master from the start
+/// stands for a force over it).
 void add_pressures(const ContactSamples& samples, std::span<const SlavePoint> points, std::span<const MasterHit> hits,
-                   std::span<const MasterHit> now, int dim, PairSums& sums, Worst& farthest) {
+                   std::span<const MasterHit> now, int dim, PairSums& sums, PairPlaces& places) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double force = std::abs(samples.pressure[i]) * samples.weight[i], size = points[i].size;
     sums.force += force;
     if (force == 0.0) continue;
     const double before = facets_beside(hits[i], samples.normal[i], size);
     const double beside = std::max(0.0, facets_beside(now[i], samples.normal[i], size) - before);
-    sums.over_gaps += force * gap_under_pressure(hits[i], size) / size;
+    const double over_gap = force * gap_under_pressure(hits[i], size) / size;
+    sums.over_gaps += over_gap;
     sums.beside += force * beside;
-    farthest.offer(beside, [&] { return place_text(std::span(samples.place[i]).first(dim)); });
+    const auto place = [&] { return place_text(std::span(samples.place[i]).first(dim)); };
+    places.gap.offer(over_gap, place);
+    places.beside.offer(beside, place);
   }
 }
 
@@ -195,7 +202,7 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
   const Placement placement = input.kinematics == Kinematics::Finite ? Placement{input.displacement, at_rest}
                                                                      : Placement{{}, input.displacement};
   std::vector<PairSums> sums(count);
-  std::vector<Worst> farthest(count);
+  std::vector<PairPlaces> places(count);
   for (std::size_t pair = 0; pair < count; ++pair) {
     const ContactPairNames& names = input.pairs[pair];
     const ContactSamples& samples = input.samples[pair];
@@ -210,7 +217,7 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
     const std::span claimed(all.points.data(), all.num_claimed);
     add_pressures(samples, claimed, hits,
                   find_now(input, placement, names, claimed, std::span(hits).first(claimed.size())), mesh.dim,
-                  sums[pair], farthest[pair]);
+                  sums[pair], places[pair]);
     add_forces(samples, mesh.surfaces.at(names.slave), all.points, hits,
                std::holds_alternative<MovedShape>(names.master), pivot, forces);
   }
@@ -221,8 +228,11 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
   for (std::size_t pair = 0; pair < count; ++pair) {
     const double scale = std::max(sums[pair].force, force_floor * total);
     const auto name = "pair '" + input.pairs[pair].name + "'";
-    if (sums[pair].over_gaps != 0.0) result.complementarity.offer(sums[pair].over_gaps / scale, [&] { return name; });
-    const auto far = over_ranks(mesh.comm, std::move(farthest[pair]));
+    const auto most = over_ranks(mesh.comm, std::move(places[pair].gap));
+    const auto far = over_ranks(mesh.comm, std::move(places[pair].beside));
+    if (sums[pair].over_gaps != 0.0)
+      result.complementarity.offer(sums[pair].over_gaps / scale,
+                                   [&] { return name + ", largest at " + most.where; });
     const double left = sums[pair].beside == 0.0 ? 0.0 : sums[pair].beside / scale;
     result.left_master.offer(left,
                              [&] { return name + (left <= input.tolerances.complementarity ? "" : left_words(far)); });

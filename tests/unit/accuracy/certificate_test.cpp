@@ -76,6 +76,7 @@ TEST_CASE("certify: pressure across an open gap violates complementarity") {
       }
     const Certificate certificate = scene.certify();
     CHECK(item(certificate, "complementarity").value == doctest::Approx(0.02 / 0.5).epsilon(1e-10));
+    CHECK(item(certificate, "complementarity").where.find("pair 'interface', largest at (") == 0);
     CHECK(failures(certificate) == Names{"complementarity"});
   }
 }
