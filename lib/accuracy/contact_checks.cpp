@@ -231,8 +231,7 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
     const auto most = over_ranks(mesh.comm, std::move(places[pair].gap));
     const auto far = over_ranks(mesh.comm, std::move(places[pair].beside));
     if (sums[pair].over_gaps != 0.0)
-      result.complementarity.offer(sums[pair].over_gaps / scale,
-                                   [&] { return name + ", largest at " + most.where; });
+      result.complementarity.offer(sums[pair].over_gaps / scale, [&] { return name + ", largest at " + most.where; });
     const double left = sums[pair].beside == 0.0 ? 0.0 : sums[pair].beside / scale;
     result.left_master.offer(left,
                              [&] { return name + (left <= input.tolerances.complementarity ? "" : left_words(far)); });
