@@ -340,8 +340,10 @@ ObjectRule<CertificateDeck> certificate_rule() {
   rule.optional("penetration", &CertificateDeck::penetration, tolerance(), "Largest penetration / local facet size.")
       .optional("tension", &CertificateDeck::tension, tolerance(),
                 "Largest tensile contact traction / largest pressure.")
-      .optional("complementarity", &CertificateDeck::complementarity, tolerance(),
-                "Sum of |pressure| |gap| / (total contact force x facet size).")
+      .optional(
+          "complementarity", &CertificateDeck::complementarity, tolerance(),
+          "Sum of |pressure| |gap| / (total contact force x facet size); also the part of the force that may act where "
+          "points have slid off their master (left_master).")
       .optional("balance", &CertificateDeck::balance, tolerance(), "Force and moment out of balance / force scale.")
       .optional("energy", &CertificateDeck::energy, tolerance(), "Violation of the energy bounds / external work.")
       .optional("friction", &CertificateDeck::friction, tolerance(),

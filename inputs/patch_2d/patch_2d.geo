@@ -3,8 +3,10 @@ DefineConstant[
   n_lower = {3, Name "cells along the lower block"},
   n_upper = {7, Name "cells along the upper block"},
   quads = {1, Name "1: quadrilaterals, 0: triangles"},
-  structured = {1, Name "1: regular mesh, 0: unstructured"}
+  structured = {1, Name "1: regular mesh, 0: unstructured"},
+  serendipity = {0, Name "1: of order 2 cells without a node in the middle (8 nodes), 0: with (9)"}
 ];
+Mesh.SecondOrderIncomplete = serendipity;
 
 Macro OneBlock
   p = newp;

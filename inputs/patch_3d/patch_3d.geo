@@ -3,8 +3,10 @@ DefineConstant[
   n_lower = {3, Name "cells along an edge of the lower block"},
   n_upper = {7, Name "cells along an edge of the upper block"},
   hexes = {1, Name "1: hexahedra, 0: tetrahedra"},
-  structured = {1, Name "1: regular mesh of the interface, 0: unstructured"}
+  structured = {1, Name "1: regular mesh of the interface, 0: unstructured"},
+  serendipity = {0, Name "1: of order 2 cells without nodes on the middles of faces and cells (20 nodes), 0: with (27)"}
 ];
+Mesh.SecondOrderIncomplete = serendipity;
 
 // Hexahedra are extruded from the base, so that an unstructured base of quadrilaterals serves as well. Of tetrahedra only
 // the faces below and above can be regular.

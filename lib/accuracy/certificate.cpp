@@ -69,6 +69,7 @@ Certificate without_numbers(const CertificateTolerances& limits) {
   fail("penetration", limits.penetration);
   fail("tension", limits.tension);
   fail("complementarity", limits.complementarity);
+  fail("left_master", limits.complementarity);
   fail("force_balance", limits.balance);
   fail("moment_balance", limits.balance);
   fail("body_balance", limits.balance);
@@ -125,6 +126,7 @@ Certificate certify(const CertificateInput& input) {
       at_most("penetration", gaps.penetration, limits.penetration),
       at_most("tension", tension, limits.tension),
       at_most("complementarity", gaps.complementarity, limits.complementarity),
+      at_most("left_master", gaps.left_master, limits.complementarity),
       at_most("force_balance", balance.force, limits.balance),
       at_most("moment_balance", balance.moment, limits.balance),
       at_most("body_balance", balance.body, limits.balance),

@@ -17,7 +17,7 @@ namespace amontons {
 struct CertificateTolerances {
   double penetration = 0.05;     // depth / local facet size
   double tension = 1e-2;         // tensile contact traction / largest pressure
-  double complementarity = 1e-2; // Σ |pressure| |gap| / h / total force
+  double complementarity = 1e-2; // Σ |pressure| |gap| / h / total force; and the same for left_master
   double balance = 1e-6;         // force and moment out of balance / force scale
   double energy = 1e-6;          // violation of the energy bounds / energy scale
   double volume_ratio = 0.0;     // smallest det(I + ∇u) / reference volume
@@ -88,12 +88,18 @@ struct Certificate {
     bool passed;
     std::string where; // the worst place, in words; may be empty
   };
-  /// penetration, tension, complementarity, force_balance, moment_balance, body_balance, virtual_work, energy,
-  /// volume_ratio, missed_contact, friction_cone, slip, dissipation, artificial: always all of them, in this order.
+  /// penetration, tension, complementarity, left_master, force_balance, moment_balance, body_balance, virtual_work,
+  /// energy, volume_ratio, missed_contact, friction_cone, slip, dissipation, artificial: always all of them, in this
+  /// order.
   std::vector<Item> items;
   bool passed() const;
 };
 
+/// left_master: Σ |pressure| times the distance, in facets and at most one, by which a point has come to be beside its
+/// master since the search, over the force of the pair. Small kinematics keeps the pairing of the reference
+/// configuration, so that a point which has slid off the master's end goes on pressing on it; the reference place moved
+/// by u_slave − u_master is where it is now. Zero in finite kinematics, where pressure beyond the master is a matter of
+/// complementarity.
 /// friction_cone: the pair's law is asked anew for its limit at the pressure and slip claimed; shear beyond it (in
 /// slip: off it), shear out of the tangent plane and shear without contact, relative to the pair's largest limit or
 /// shear. slip: Σ |shear| |Δg_t − slip| over Σ |shear| times the largest displacement increment in the scene, with

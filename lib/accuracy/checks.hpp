@@ -6,10 +6,12 @@
 
 namespace amontons::accuracy {
 
-/// Gaps of the pairs: penetration relative to the facet size, and Σ |p g| / h relative to the force of the pair.
+/// Gaps of the pairs: penetration relative to the facet size; relative to the force of the pair Σ |p g| / h, and Σ |p|
+/// times the distance, in facets and at most one, by which a point has come to be beside the master.
 struct GapChecks {
   Worst penetration;
   Worst complementarity;
+  Worst left_master;
 };
 
 /// Contact forces as the samples claim them, on each body: from the slave side, and through the fresh search on the

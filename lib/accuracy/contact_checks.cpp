@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace amontons::accuracy {
 
@@ -53,8 +54,11 @@ std::vector<MasterHit> find_on_shape(const MovedShape& master, const Mesh& mesh,
     MasterHit hit;
     hit.found = true;
     hit.gap = contact.gap;
-    for (std::size_t c = 0; c < 3; ++c)
+    hit.jump = point.displacement;
+    for (std::size_t c = 0; c < 3; ++c) {
       hit.gap += contact.normal[c] * point.displacement[c];
+      hit.away[c] = contact.gap * contact.normal[c];
+    }
     hits.push_back(hit);
   }
   return hits;
@@ -67,6 +71,42 @@ std::vector<MasterHit> find_on_surface(const CertificateInput& input, const Plac
   const double reach = reach_of(input.mesh, displacement, master, points, start);
   const auto welded = welded_bodies(input.mesh);
   return find_on_master(input.mesh, displacement, master, points, reach, start, opposite_of(names, welded));
+}
+
+std::vector<MasterHit> find_hits(const CertificateInput& input, const Placement& placement,
+                                 const ContactPairNames& names, std::span<const SlavePoint> points) {
+  const auto* shape = std::get_if<MovedShape>(&names.master);
+  return shape != nullptr ? find_on_shape(*shape, input.mesh, points)
+                          : find_on_surface(input, placement, names, points);
+}
+
+/// What the points find where they are now. Small kinematics has searched in the reference configuration; a point now
+/// stands over the reference master where its motion relative to its master has taken it. Finite kinematics has
+/// searched where the points are.
+std::vector<MasterHit> find_now(const CertificateInput& input, const Placement& placement,
+                                const ContactPairNames& names, std::span<const SlavePoint> points,
+                                std::span<const MasterHit> hits) {
+  if (input.kinematics == Kinematics::Finite) return {hits.begin(), hits.end()};
+  std::vector<SlavePoint> moved(points.begin(), points.end());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c)
+      moved[i].place[c] += hits[i].jump[c];
+    moved[i].displacement = {};
+  }
+  return find_hits(input, placement, names, moved);
+}
+
+/// How far a point is from the nearest place of the master across the normal that its pressure acts along, in facets;
+/// 1 where it is a facet or more, or no master is near. Over a master, also a curved one, a point in contact has it
+/// below it; beyond a rim or an edge, or where a rigid shape has curved away, beside it.
+double facets_beside(const MasterHit& hit, const std::array<double, 3>& normal, double size) {
+  if (!hit.found) return 1.0;
+  double height = 0.0, square = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    height += hit.away[c] * normal[c];
+  for (std::size_t c = 0; c < 3; ++c)
+    square += std::pow(hit.away[c] - height * normal[c], 2);
+  return std::min(1.0, std::sqrt(square) / size);
 }
 
 /// The gap that a claimed pressure is held against: where there is no master the distance to it, at least a facet.
@@ -107,6 +147,50 @@ void add_forces(const ContactSamples& samples, const FacetSet& slave, std::span<
   }
 }
 
+/// Of one pair: Σ |p g| w / h, Σ |p| w, and the latter times the distances beside the master in facets.
+struct PairSums {
+  double over_gaps = 0.0, force = 0.0, beside = 0.0;
+};
+constexpr int num_sums = sizeof(PairSums) / sizeof(double);
+/// Where Σ |p g| w / h has its largest part, and the point that has come to be farthest beside the master.
+struct PairPlaces {
+  Worst gap, beside;
+};
+
+/// `hits`, `now`: what the points found where they were searched for, and where they are. Beside the
+/// master counts what is so now and was not before (a node of a slave that sticks out of its master from the start
+/// stands for a force over it).
+void add_pressures(const ContactSamples& samples, std::span<const SlavePoint> points, std::span<const MasterHit> hits,
+                   std::span<const MasterHit> now, int dim, PairSums& sums, PairPlaces& places) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double force = std::abs(samples.pressure[i]) * samples.weight[i], size = points[i].size;
+    sums.force += force;
+    if (force == 0.0) continue;
+    const double before = facets_beside(hits[i], samples.normal[i], size);
+    const double beside = std::max(0.0, facets_beside(now[i], samples.normal[i], size) - before);
+    const double over_gap = force * gap_under_pressure(hits[i], size) / size;
+    sums.over_gaps += over_gap;
+    sums.beside += force * beside;
+    const auto place = [&] { return place_text(std::span(samples.place[i]).first(dim)); };
+    places.gap.offer(over_gap, place);
+    places.beside.offer(beside, place);
+  }
+}
+
+/// Where points have left their master, and what to do about it. `farthest`: in facets.
+std::string left_words(const Worst& farthest) {
+  std::ostringstream words;
+  words.precision(2);
+  words << ": points under pressure have left the master, the farthest, from " << farthest.where << ", by ";
+  if (farthest.value < 1.0)
+    words << farthest.value << " facets";
+  else
+    words << "a facet or more";
+  words << "; small kinematics carries them on as if it were still there: use kinematics: finite, or a master that"
+           " reaches as far as the motion";
+  return words.str();
+}
+
 } // namespace
 
 GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>& pivot, ClaimedForces& forces) {
@@ -117,36 +201,41 @@ GapChecks check_gaps(const CertificateInput& input, const std::array<double, 3>&
   const std::vector<double> at_rest(input.kinematics == Kinematics::Finite ? input.displacement.size() : 0, 0.0);
   const Placement placement = input.kinematics == Kinematics::Finite ? Placement{input.displacement, at_rest}
                                                                      : Placement{{}, input.displacement};
-  std::vector<double> sums(2 * count, 0.0); // per pair Σ |p g| w / h, Σ |p| w
+  std::vector<PairSums> sums(count);
+  std::vector<PairPlaces> places(count);
   for (std::size_t pair = 0; pair < count; ++pair) {
     const ContactPairNames& names = input.pairs[pair];
     const ContactSamples& samples = input.samples[pair];
-    const FacetSet& slave = mesh.surfaces.at(names.slave);
-    const PairPoints all = points_of_pair(input, placement, slave, samples);
-    const auto* shape = std::get_if<MovedShape>(&names.master);
-    const std::vector<MasterHit> hits = shape != nullptr ? find_on_shape(*shape, mesh, all.points)
-                                                         : find_on_surface(input, placement, names, all.points);
+    const PairPoints all = points_of_pair(input, placement, mesh.surfaces.at(names.slave), samples);
+    const std::vector<MasterHit> hits = find_hits(input, placement, names, all.points);
     for (std::size_t i = 0; i < hits.size(); ++i) {
       if (!hits[i].found || hits[i].beyond > 0.0) continue;
       result.penetration.offer(-hits[i].gap / all.points[i].size, [&] {
         return "pair '" + names.name + "' at " + place_text(std::span(all.points[i].place).first(mesh.dim));
       });
     }
-    for (std::size_t i = 0; i < all.num_claimed; ++i) {
-      const double force = std::abs(samples.pressure[i]) * samples.weight[i], size = all.points[i].size;
-      if (force > 0.0) sums[2 * pair] += force * gap_under_pressure(hits[i], size) / size;
-      sums[2 * pair + 1] += force;
-    }
-    add_forces(samples, slave, all.points, hits, shape != nullptr, pivot, forces);
+    const std::span claimed(all.points.data(), all.num_claimed);
+    add_pressures(samples, claimed, hits,
+                  find_now(input, placement, names, claimed, std::span(hits).first(claimed.size())), mesh.dim,
+                  sums[pair], places[pair]);
+    add_forces(samples, mesh.surfaces.at(names.slave), all.points, hits,
+               std::holds_alternative<MovedShape>(names.master), pivot, forces);
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(count) * num_sums, MPI_DOUBLE, MPI_SUM, mesh.comm);
   double total = 0.0;
-  for (std::size_t pair = 0; pair < count; ++pair)
-    total += sums[2 * pair + 1];
-  for (std::size_t pair = 0; pair < count; ++pair)
-    if (sums[2 * pair] != 0.0)
-      result.complementarity.offer(sums[2 * pair] / std::max(sums[2 * pair + 1], force_floor * total),
-                                   [&] { return "pair '" + input.pairs[pair].name + "'"; });
+  for (const auto& sum : sums)
+    total += sum.force;
+  for (std::size_t pair = 0; pair < count; ++pair) {
+    const double scale = std::max(sums[pair].force, force_floor * total);
+    const auto name = "pair '" + input.pairs[pair].name + "'";
+    const auto most = over_ranks(mesh.comm, std::move(places[pair].gap));
+    const auto far = over_ranks(mesh.comm, std::move(places[pair].beside));
+    if (sums[pair].over_gaps != 0.0)
+      result.complementarity.offer(sums[pair].over_gaps / scale, [&] { return name + ", largest at " + most.where; });
+    const double left = sums[pair].beside == 0.0 ? 0.0 : sums[pair].beside / scale;
+    result.left_master.offer(left,
+                             [&] { return name + (left <= input.tolerances.complementarity ? "" : left_words(far)); });
+  }
   result.penetration = over_ranks(mesh.comm, std::move(result.penetration));
   return result;
 }

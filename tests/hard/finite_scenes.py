@@ -78,6 +78,17 @@ def off_the_end(seed, mu=None):
     return mesh, whole, check
 
 
+LEFT = "left_master is 1 at t = 2, allowed 0.2: pair 'pair': points under pressure have left the master"
+
+
+@scene("small kinematics carry a block that has left its master on: refused", (*FRICTIONAL, "vi", "dual"), status=4, diagnosis=LEFT)
+def off_the_end_small(seed):
+    # On the master at t = 1.5 still, gone at t = 2.
+    mesh, whole = slider(seed, "2*max(t-1,0)", "-0.01*min(t,1)", increments=4)
+    del whole["kinematics"]
+    return mesh, whole, None
+
+
 @scene("contact lost, the block carried on, and found again", FRICTIONAL, name="lost_and_found")
 @scene("contact lost and found again with friction", FRICTIONAL, name="lost_and_found_friction", mu=0.3)
 def lost_and_found(seed, mu=None):

@@ -15,7 +15,7 @@ FRICTIONAL, FRICTIONLESS = ("semismooth", "uzawa", "penalty"), ("semismooth", "u
 
 @dataclass
 class Scene:
-    """`status`: the exit status that it must end with, and for 3 `diagnosis`: words that must be in the log."""
+    """`status`: the exit status that it must end with, and if not 0 `diagnosis`: words that must be in the log."""
 
     why: str
     make: object

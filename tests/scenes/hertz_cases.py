@@ -54,6 +54,21 @@ class Hertz:
         error = np.interp(at, x, pressure) - exact
         return math.sqrt(np.sum(half * weight * error**2) / np.sum(half * weight * exact**2))
 
+    def profile_error(self):
+        """Error of the block's deflection over two half-widths, mean removed, relative to its root mean square (in 2D)."""
+        (_, (E, nu)), places = self.materials, self.results.places
+        top = self.results.in_body("block") & (np.abs(places[:, 1]) < 1e-9) & (places[:, 0] < 2.0 * self.a)
+        x, u = places[top, 0], self.results.nodal["displacement"][top, 1]
+        order = np.argsort(x)
+        x, u = x[order], u[order]
+        exact = references.line_contact_profile(x, self.a, self.p0, E, nu)
+
+        def without_mean(values):
+            return values - np.trapz(values, x) / (x[-1] - x[0])
+
+        error, exact = without_mean(u - exact), without_mean(exact)
+        return math.sqrt(np.trapz(error**2, x) / np.trapz(exact**2, x))
+
     def force_from_approach(self, depth):
         """The force that Hertz needs for the approach seen between two nodes on the axis, near `depth` in each body."""
         places = self.results.places
@@ -155,6 +170,16 @@ def normals_2d(bench):
     bench.close("with R ten times as large", width(larger) - width(larger, along), (leaning - upright) / 10.0, 0.2)
 
 
+def profile_2d(bench):
+    """The block's profile nears Hertz's when cells grow more slowly away from the contact."""
+    errors = []
+    for growth, limit in ((0.25, 3e-3), (0.0625, 1e-3)):
+        changes = {"mesh.parameters.growth": growth, "contact.0.integration": {"segment": {}}, "steps.0.increments": 1, "contact.0.projection": {"slave_normal": {}}}
+        errors.append(Hertz("hertz_2d", bench.run("hertz_2d", changes)).profile_error())
+        bench.below(f"growth {growth}: profile of the block", errors[-1], limit)
+    bench.below("error with a quarter of the growth / with all of it", errors[1] / errors[0], 0.5)
+
+
 def reference_axisymmetric(bench):
     check(bench, "hertz_axisymmetric", {}, 0.01, 0.02, 0.01)
 
@@ -210,6 +235,7 @@ CASES = {
         "second_order": second_order_2d,
         "exchanged": exchanged_2d,
         "normals": normals_2d,
+        "profile": profile_2d,
         "segments": segments_2d,
         "formulations": lambda bench: common_checks.formulations_agree(bench, "hertz_2d"),
         "ranks": lambda bench: common_checks.ranks_agree(bench, "hertz_2d"),

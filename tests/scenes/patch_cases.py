@@ -119,6 +119,26 @@ def run_segments(bench, scene, shape, up, formulations):
                 check_exact(bench, f"{label}, {name}, {side} slave", results, up)
 
 
+def serendipity(bench, scene, shape, up):
+    """Cells of order 2 that come with 8 or 20 nodes, on segments, the coarser side as slave."""
+    for name in ("semismooth", "dual", "vi"):
+        results = bench.run(
+            scene,
+            {
+                "mesh.parameters.serendipity": 1,
+                "mesh.parameters.n_lower": 2,
+                "mesh.parameters.n_upper": 3,
+                "mesh.order": 2,
+                "contact.0.slave": "lower_top",
+                "contact.0.master": "upper_bottom",
+                "contact.0.enforce": FORMULATIONS[name],
+                "contact.0.integration": {"segment": {"order": 4}},
+                "petsc": {"snes_rtol": 1e-13},
+            },
+        )
+        check_exact(bench, f"{shape} without nodes on the middles of their faces, {name}", results, up)
+
+
 def segments_2d(bench):
     run_segments(bench, "patch_2d", "quads", 1, ["semismooth", "uzawa", "vi", "dual"])
 
@@ -140,6 +160,6 @@ def segments_dual_3d(bench):
 
 
 CASES = {
-    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "vi": vi_2d, "projection": projection_2d, "segments": segments_2d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_2d")},
-    "patch_3d": {"elements": elements_3d, "formulations": formulations_3d, "segments": segments_3d, "segments_uzawa": segments_uzawa_3d, "segments_vi": segments_vi_3d, "segments_dual": segments_dual_3d, "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_3d")},
+    "patch_2d": {"elements": elements_2d, "formulations": formulations_2d, "vi": vi_2d, "projection": projection_2d, "segments": segments_2d, "serendipity": lambda bench: serendipity(bench, "patch_2d", "quads", 1), "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_2d")},
+    "patch_3d": {"elements": elements_3d, "formulations": formulations_3d, "segments": segments_3d, "segments_uzawa": segments_uzawa_3d, "segments_vi": segments_vi_3d, "segments_dual": segments_dual_3d, "serendipity": lambda bench: serendipity(bench, "patch_3d", "hexes", 2), "ranks": lambda bench: common_checks.ranks_agree(bench, "patch_3d")},
 }

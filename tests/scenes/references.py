@@ -71,6 +71,15 @@ def hertz_pressure(r, a, p0):
     return p0 * np.sqrt(np.maximum(0.0, 1.0 - (np.asarray(r) / a) ** 2))
 
 
+def line_contact_profile(x, a, p0, E, nu):
+    """Deflection of a half-plane (plane strain, positive outwards, up to a constant) under p0 sqrt(1 - (x/a)^2): slope
+    2 (1 - nu^2) p0 / E times x/a inside the contact and x/a - sqrt((x/a)^2 - 1) beyond it ([J] 2.25 integrated)."""
+    s = np.abs(np.asarray(x)) / a
+    beyond = np.maximum(s, 1.0)
+    root = np.sqrt(beyond**2 - 1.0)
+    return (1.0 - nu**2) * p0 / E * a * (s**2 - beyond * root + np.log(beyond + root))
+
+
 def sphere_axis_strain(z, a, p0, E, nu):
     """Strain eps_z at depth z under the middle of a circular contact; stresses of [J] 3.45 (tension positive)."""
     s = np.maximum(z / a, 1e-12)

@@ -36,7 +36,7 @@ void move_nodes(Case& scene, const std::array<double, 3>& place, int body, const
 TEST_CASE("certify: the exact solution passes with values at rounding") {
   for (const int dim : {2, 3}) {
     const Certificate certificate = compressed_blocks(MPI_COMM_WORLD, dim).certify();
-    CHECK(certificate.items.size() == 14);
+    CHECK(certificate.items.size() == 15);
     CHECK(certificate.passed());
     CHECK(failures(certificate).empty());
     for (const auto& one : certificate.items) {
@@ -76,6 +76,7 @@ TEST_CASE("certify: pressure across an open gap violates complementarity") {
       }
     const Certificate certificate = scene.certify();
     CHECK(item(certificate, "complementarity").value == doctest::Approx(0.02 / 0.5).epsilon(1e-10));
+    CHECK(item(certificate, "complementarity").where.find("pair 'interface', largest at (") == 0);
     CHECK(failures(certificate) == Names{"complementarity"});
   }
 }
@@ -187,8 +188,8 @@ TEST_CASE("certify: what is not a number passes nothing") {
   Case scene = compressed_blocks(MPI_COMM_WORLD, 2);
   scene.displacement[0] = std::numeric_limits<double>::quiet_NaN();
   const Certificate certificate = scene.certify();
-  CHECK(certificate.items.size() == 14);
-  CHECK(failures(certificate).size() == 14);
+  CHECK(certificate.items.size() == 15);
+  CHECK(failures(certificate).size() == 15);
 }
 
 TEST_CASE("certify: refuses arrays that do not fit") {
@@ -265,4 +266,68 @@ TEST_CASE("certify: rigid masters") {
   CHECK(item(scene.certify(), "penetration").value == 0.0);
   CHECK(item(scene.certify(), "missed_contact").value == doctest::Approx(0.05 / 0.2475).epsilon(1e-2));
   CHECK(item(scene.certify(), "missed_contact").where.find("rigid master of pair 'floor'") != std::string::npos);
+}
+
+TEST_CASE("certify: points under pressure that have slid off their master, in both kinematics") {
+  for (const int dim : {2, 3})
+    for (const auto kinematics : {Kinematics::Small, Kinematics::Finite})
+      for (const double slide : {0.0, 0.01, 0.3, 5.0}) {
+        CAPTURE(dim);
+        CAPTURE(slide);
+        Case scene = compressed_blocks(MPI_COMM_WORLD, dim);
+        scene.kinematics = kinematics;
+        std::vector<std::uint8_t> of_upper(scene.mesh.num_local(), 0);
+        for (const auto& block : scene.mesh.blocks)
+          if (block.body == 1)
+            for (const auto node : block.nodes)
+              of_upper[node] = 1;
+        for (std::int32_t node = 0; node < scene.mesh.num_local(); ++node)
+          if (of_upper[node]) scene.displacement[std::size_t(node) * dim] += slide;
+        // Facets of the slave are 1/2 long, the master ends at x = 1.
+        double sums[2] = {};
+        const auto& samples = scene.samples[0];
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+          const double beside = std::clamp((samples.place[i][0] + slide - 1.0) / 0.5, 0.0, 1.0);
+          sums[0] += samples.weight[i] * beside;
+          sums[1] += samples.weight[i];
+        }
+        MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+        const Certificate certificate = scene.certify();
+        const auto& left = item(certificate, "left_master");
+        const auto& pressed = item(certificate, "complementarity");
+        CHECK(pressed.passed == (kinematics == Kinematics::Small || slide < 0.1));
+        CHECK(left.value == doctest::Approx(kinematics == Kinematics::Small ? sums[0] / sums[1] : 0.0).epsilon(1e-9));
+        CHECK(left.passed == (kinematics == Kinematics::Finite || slide < 0.1));
+        if (left.passed) continue;
+        CHECK(left.where.find("pair 'interface': points under pressure have left the master") == 0);
+        CHECK(left.where.find("use kinematics: finite") != std::string::npos);
+        CHECK(failures(certificate) == Names{"left_master"});
+      }
+}
+
+TEST_CASE("certify: a rigid plane has no end, under a ball one can slide away") {
+  Case scene;
+  scene.mesh = block_mesh(MPI_COMM_WORLD, 2, {{"block", {0, 0, 0}, {0.1, 0.1, 0}, {2, 2, 1}}});
+  scene.space = Space::PlaneStress;
+  scene.external.assign(scene.mesh.coordinates.size(), 0.0);
+  const double slide = 0.5, radius = 1.0;
+  displace(scene, [&](const auto&) { return std::array{slide, 0.0, 0.0}; });
+  scene.samples = {uniform_samples(scene.mesh, "block_bottom", 1.0, {0, 1, 0})};
+  scene.pairs = {{"floor", "block_bottom", MovedShape{RigidPlane{{0, 0, 0}, {0, 1, 0}}, {}}}};
+  CHECK(item(scene.certify(), "left_master").value < 1e-15);
+
+  scene.pairs[0].master = MovedShape{RigidSphere{{0.05, -radius, 0.0}, radius}, {}};
+  // The nearest place of the disc, along the bottom of the block.
+  const auto beside = [&](double x) {
+    return std::min(1.0, std::abs(x - 0.05) * (1.0 - radius / std::hypot(x - 0.05, radius)) / 0.05);
+  };
+  double sums[2] = {};
+  const auto& samples = scene.samples[0];
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    sums[0] += samples.weight[i] * (beside(samples.place[i][0] + slide) - beside(samples.place[i][0]));
+    sums[1] += samples.weight[i];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  CHECK(item(scene.certify(), "left_master").value == doctest::Approx(sums[0] / sums[1]).epsilon(1e-9));
+  CHECK_FALSE(item(scene.certify(), "left_master").passed);
 }
