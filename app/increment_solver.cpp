@@ -79,7 +79,7 @@ SolveOutcome IncrementSolver::solve_plainly() {
 SolveOutcome IncrementSolver::solve(double target) {
   start(target);
   auto outcome = solve_plainly();
-  if (outcome.converged || outcome.interrupted || bounded_) return outcome;
+  if (outcome.converged || outcome.interrupted || !newton_) return outcome;
   trouble_ = newton_->trouble();
   trouble_->solver = outcome.reason;
   outcome.reason = in_words(*trouble_);

@@ -41,8 +41,8 @@ class IncrementSolver {
   /// not get there. A solid that is not linear and has supports that move starts where the last accepted increment
   /// points to, unless an increment has failed since. Collective.
   SolveOutcome solve(double target);
-  /// What went on in the last solve that plain iterations did not get through; absent if there was none, or with
-  /// bounds.
+  /// What went on in the last solve that plain iterations did not get through; absent if there was none, and with
+  /// bounds or conditions.
   const std::optional<Trouble>& trouble() const { return trouble_; }
   /// How often each of remedies() was tried and helped; empty if none ever was.
   std::vector<Ladder::Use> remedy_uses() const { return ladder_ ? ladder_->uses() : std::vector<Ladder::Use>{}; }
