@@ -87,6 +87,21 @@ SolveOutcome IncrementSolver::solve(double target) {
   return ladder_->climb(unknowns_, outcome, *trouble_);
 }
 
+SolveOutcome IncrementSolver::solve_from(const OtherStart& from, double target) {
+  roll_back();
+  start(target);
+  if (scene_.multipliers) { // those of the last state would lead back to it
+    const auto none = scene_.multipliers->new_vector();
+    AMT_PETSC(VecSet(none, 0.0));
+    scene_.multipliers->set(none);
+  }
+  const auto gone = go_to(from, *scene_.problem, *newton_, unknowns_);
+  if (!gone.converged) return gone;
+  auto outcome = solve_plainly();
+  outcome.add_effort(gone);
+  return outcome;
+}
+
 std::unique_ptr<Ladder> IncrementSolver::make_ladder() {
   const auto restart = [this] {
     roll_back();

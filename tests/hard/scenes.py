@@ -300,20 +300,47 @@ def plank_on_supports(seed):
     return mesh, whole, check
 
 
-@scene("a wedge that stays in its slot when let go: not the only solution", FRICTIONAL)
-def wedge(seed):
-    mesh, slope = Mesh(seed), 0.1  # half-angle 5.7 degrees, mu 0.5: self-locking
+def wedge_in_slot(seed, mu):
+    mesh, slope = Mesh(seed), 0.1  # half-angle 5.7 degrees: locks itself from mu = 0.1 on
     mesh.box("block", (-0.5, 0), (0.5, 1), (12, 12), bend=lambda x: np.array([x[0] * (1 + 2 * slope * x[1]), x[1], 0]))
     contact = [
-        pair("block_left", plane((-0.5, 0), (1, slope)), "west", 0.5, False),
-        pair("block_right", plane((0.5, 0), (-1, slope)), "east", 0.5, False),
+        pair("block_left", plane((-0.5, 0), (1, slope)), "west", mu, False),
+        pair("block_right", plane((0.5, 0), (-1, slope)), "east", mu, False),
     ]
-    whole = deck({"block": (E, NU)}, [push("block_top", "5*min(t,2-t)")], contact, ((1, 2), (2, 2)))
+    return mesh, deck({"block": (E, NU)}, [push("block_top", "5*min(t,2-t)")], contact, ((1, 2), (2, 2)))
+
+
+@scene("a wedge that stays in its slot when let go", FRICTIONAL)
+def wedge(seed):
+    mesh, whole = wedge_in_slot(seed, 0.5)
 
     def check(run):
         west, east = (np.array(run.summary["contact"][name]["force"]) for name in ("west", "east"))
         yield "still held: force along x away from zero", float(west[0] < 1e-3), 0.5
         yield "both walls push alike", abs(west[0] + east[0]) / abs(west[0]), 0.02
+
+    return mesh, whole, check
+
+
+# Without load the block also fits the slot unstrained, without any force: a wedge that locks has two solutions at the
+# end, one that does not lock has this one only. On the way the load is there, and one solution.
+HOLDING = ("semismooth", "uzawa", "penalty")
+
+
+@scene("let go, a wedge that locks has two solutions: the program must say so", HOLDING, name="wedge_two_solutions", mu=0.5, several=1)
+@scene("a wedge below the critical friction: the program must not see two solutions", HOLDING, name="wedge_one_solution", mu=0.05, several=0)
+def wedge_counted(seed, mu, several):
+    mesh, whole = wedge_in_slot(seed, mu)
+    whole["look_for_other_solutions"] = True
+
+    def check(run):
+        found = run.summary["other_solutions"]
+        yield "all increments looked at", abs(found["increments_looked_at"] - 4), 0
+        yield f"{several} of them with several solutions", abs(found["increments_with_several_solutions"] - several), 0
+        yield "solutions of the last", abs(found["most_solutions_found"] - 1 - several), 0
+        if several:
+            yield "it is the last", abs(found.get("first_time", 0) - 2), 1e-12
+            yield "the other lets go", float(found.get("largest_difference", {}).get("pressure", 0) < 0.3), 0
 
     return mesh, whole, check
 
