@@ -348,11 +348,12 @@ def wedge_counted(seed, mu, several):
 # --- shapes
 
 
-def bent_pair(seed, rise, press, mu=None, cells=((4, 2), (6, 2))):
-    """Lower block with the top at 0.5 + rise(x), upper one with the bottom there, too; pressed by `press` along y."""
+def bent_pair(seed, rise, press, mu=None, cells=((4, 2), (6, 2)), column=lambda x: x):
+    """Lower block with the top at 0.5 + rise(x), upper one with the bottom there, too; pressed by `press` along y.
+    `column` puts the nodes of a column at another x."""
     mesh = Mesh(seed)
-    mesh.box("lower", (0, 0), (1, 0.5), cells[0], bend=lambda x: x + np.array([0, rise[0](x[0]) * x[1] / 0.5, 0]))
-    mesh.box("upper", (0, 0.5), (1, 1), cells[1], bend=lambda x: x + np.array([0, rise[1](x[0]) * (1 - x[1]) / 0.5, 0]))
+    mesh.box("lower", (0, 0), (1, 0.5), cells[0], bend=lambda x: np.array([column(x[0]), x[1] + rise[0](column(x[0])) * x[1] / 0.5, 0]))
+    mesh.box("upper", (0, 0.5), (1, 1), cells[1], bend=lambda x: np.array([column(x[0]), x[1] + rise[1](column(x[0])) * (1 - x[1]) / 0.5, 0]))
     boundary = [hold("lower_bottom", x=0, y=0), hold("upper_top", x=0, y=f"-{press}*t")]
     return mesh, deck({"lower": (E, NU), "upper": (E, NU)}, boundary, [pair("upper_bottom", "lower_top", mu=mu)])
 
@@ -377,11 +378,13 @@ def kinked(seed, kink, mu=None):
 
 @scene("bodies that touch at one point", name="touch_at_a_point")
 @scene("bodies that touch at one point, with friction", FRICTIONAL, name="touch_at_a_point_friction", mu=0.3)
-@scene("zig-zag on zig-zag: normals that jump from facet to facet", name="zigzag", wave=(0.03, 8))
-def bulges(seed, mu=None, wave=None):
-    if wave:
-        rise = lambda x: wave[0] * np.cos(wave[1] * np.pi * x)  # noqa: E731
-        mesh, whole = bent_pair(seed, (rise, rise), 0.02, mu, ((8, 2), (16, 2)))
+@scene("zig-zag on zig-zag: normals that jump from facet to facet", name="zigzag", teeth=8)
+def bulges(seed, mu=None, teeth=None):
+    if teeth:  # with nodes of both sides at every kink, so that the surfaces are the same on any mesh
+        rise = lambda x: 0.03 - 0.06 * abs((teeth * x + 1) % 2 - 1)  # noqa: E731
+        kink = lambda x: round(teeth * x) / teeth  # noqa: E731
+        column = lambda x: kink(x) if abs(x - kink(x)) < 0.25 / teeth else x  # noqa: E731
+        mesh, whole = bent_pair(seed, (rise, rise), 0.02, mu, ((teeth, 2), (2 * teeth, 2)), column)
     else:
         mesh, whole = bent_pair(seed, (lambda x: -0.4 * (x - 0.5) ** 2, lambda x: 0.4 * (x - 0.5) ** 2), 0.05, mu, ((15, 4), (20, 4)))
     return mesh, whole, push_and_answer
@@ -392,8 +395,8 @@ def bulges(seed, mu=None, wave=None):
 @scene("half of the slave is beside the master", name="corner_over_corner", where=(0.5, 1.5))
 def edges(seed, where):
     mesh = Mesh(seed)
-    mesh.box("lower", (0, 0), (1, 0.5), (5, 3))
-    mesh.box("upper", (where[0], 0.5), (where[1], 0.8), (6, 2))
+    mesh.box("lower", (0, 0), (1, 0.5), (10, 5))
+    mesh.box("upper", (where[0], 0.5), (where[1], 0.8), (16, 3))
     boundary = [hold("lower_bottom", x=0, y=0), {"on": "upper_top", "displacement": {"x": 0}, "resultant": {"y": "-2*t"}}]
     whole = deck({"lower": (E, NU), "upper": (E, NU)}, boundary, [pair("upper_bottom", "lower_top")])
     return mesh, whole, lambda run: [force_is(run, "pair", [0, 2.0])]
