@@ -79,10 +79,11 @@ SolveOutcome IncrementSolver::solve_plainly() {
 SolveOutcome IncrementSolver::solve(double target) {
   start(target);
   auto outcome = solve_plainly();
-  if (outcome.converged || outcome.interrupted || !newton_) return outcome;
-  trouble_ = newton_->trouble();
+  if (outcome.converged || outcome.interrupted) return outcome;
+  trouble_ = bounded_ ? bounded_->trouble() : condensed_ ? condensed_->trouble() : newton_->trouble();
   trouble_->solver = outcome.reason;
   outcome.reason = in_words(*trouble_);
+  if (!newton_) return outcome;
   if (!ladder_) ladder_ = make_ladder();
   return ladder_->climb(unknowns_, outcome, *trouble_);
 }

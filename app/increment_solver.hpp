@@ -44,8 +44,7 @@ class IncrementSolver {
   SolveOutcome solve(double target);
   /// The same from another start and without remedies. Not with bounds or conditions. Collective.
   SolveOutcome solve_from(const OtherStart& start, double target);
-  /// What went on in the last solve that plain iterations did not get through; absent if there was none, and with
-  /// bounds or conditions.
+  /// What went on in the last solve that plain iterations did not get through; absent if there was none.
   const std::optional<Trouble>& trouble() const { return trouble_; }
   /// How often each of remedies() was tried and helped; empty if none ever was.
   std::vector<Ladder::Use> remedy_uses() const { return ladder_ ? ladder_->uses() : std::vector<Ladder::Use>{}; }

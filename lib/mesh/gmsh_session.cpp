@@ -275,6 +275,8 @@ GmshSession::GmshSession(const std::map<std::string, double>& parameters) {
   gmsh::option::setNumber("General.Terminal", 0);
   // 1: stop meshing and only log; by default the API throws, also out of gmsh's OpenMP regions, which ends the program
   gmsh::option::setNumber("General.AbortOnError", 1);
+  gmsh::option::setNumber("Mesh.PartitionConvertMsh2", 0); // partitions of a .msh are not used, and gmsh 4.8 crashes
+                                                           // over some that make no sense
   gmsh::logger::start();
 }
 
