@@ -4,6 +4,7 @@
 #include "check.hpp"
 #include "deck.hpp"
 #include "deck/shape.hpp"
+#include "output/hdf5_file.hpp"
 #include "run.hpp"
 
 #include <CLI/CLI.hpp>
@@ -139,6 +140,7 @@ int run_command(MPI_Comm comm, const SplitArguments& arguments) {
     if (rank == 0)
       for (const auto& message : error.messages())
         std::cerr << "error: " << message << std::endl;
+    if (has_stuck_hdf5_file()) MPI_Abort(comm, status_wrong_input);
     return status_wrong_input;
   }
 }

@@ -412,6 +412,11 @@ Rule<Deck> deck_rule() {
       .optional("estimate_path_error", &Deck::estimate_path_error, boolean(),
                 "true: every increment is solved in two halves, too, for the estimate of the path error alone; takes "
                 "about three times as long. Steps with a path_tolerance have the estimate anyway.")
+      .optional("look_for_other_solutions", &Deck::look_for_other_solutions, boolean(),
+                "true: every increment is solved from other starts, too (all contact open; without friction), and log "
+                "and summary say when that leads to other contact tractions. Takes about three times as long. Not for "
+                "`vi` and `basis: dual`.",
+                "A. Klarbring, Ing.-Arch. 60 (1990) 529-541.")
       .optional("adapt", &Deck::adapt, adapt_rule(),
                 "Mesh anew from the estimated error and run the whole history again, until a quantity of the end is "
                 "accurate enough. The .geo is meshed freely, in triangles or tetrahedra, also where it has transfinite "

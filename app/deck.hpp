@@ -178,6 +178,7 @@ struct Deck {
   std::vector<StepDeck> steps;
   std::optional<StabilizationDeck> stabilization; // absent: none
   bool estimate_path_error = false;
+  bool look_for_other_solutions = false;
   std::optional<AdaptDeck> adapt;
   CertificateDeck certificate;
   OutputDeck output;

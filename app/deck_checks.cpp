@@ -321,6 +321,18 @@ void check_steps(const Check& check) {
   }
 }
 
+void check_other_solutions(const Check& check) {
+  if (!check.deck.look_for_other_solutions || !check.sound("contact")) return;
+  for (std::size_t i = 0; i < check.deck.contact.size(); ++i) {
+    const auto& enforce = check.deck.contact[i].enforce;
+    if (is_condensed(enforce) || std::holds_alternative<ViDeck>(enforce))
+      check.fail({"contact", i, "enforce"}, list_path("contact", i) +
+                                                ".enforce: look_for_other_solutions holds contact points open, which "
+                                                "`vi` and `basis: dual` cannot. Use `{semismooth: {}}`, uzawa or "
+                                                "penalty, or remove look_for_other_solutions.");
+  }
+}
+
 void check_output(const Check& check) {
   std::set<std::string> seen;
   for (const auto& field : check.deck.output.fields)
@@ -391,6 +403,7 @@ void check_deck(const Deck& deck, const DeckNode& root, Reading& reading) {
   check_boundary(check);
   check_contact(check);
   check_steps(check);
+  check_other_solutions(check);
   check_adapt(check);
   check_output(check);
   check_petsc(check);

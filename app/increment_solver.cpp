@@ -79,16 +79,32 @@ SolveOutcome IncrementSolver::solve_plainly() {
 SolveOutcome IncrementSolver::solve(double target) {
   start(target);
   auto outcome = solve_plainly();
-  if (outcome.converged || outcome.interrupted || bounded_) return outcome;
-  trouble_ = newton_->trouble();
+  if (outcome.converged || outcome.interrupted) return outcome;
+  trouble_ = bounded_ ? bounded_->trouble() : condensed_ ? condensed_->trouble() : newton_->trouble();
   trouble_->solver = outcome.reason;
   outcome.reason = in_words(*trouble_);
+  if (!newton_) return outcome;
   if (!ladder_) ladder_ = make_ladder();
   return ladder_->climb(unknowns_, outcome, *trouble_);
 }
 
 bool IncrementSolver::solve_linearized(Vec load, Vec result) {
   return newton_ && newton_->solve_linearized(accepted_, load, result);
+}
+
+SolveOutcome IncrementSolver::solve_from(const OtherStart& from, double target) {
+  roll_back();
+  start(target);
+  if (scene_.multipliers) { // those of the last state would lead back to it
+    const auto none = scene_.multipliers->new_vector();
+    AMT_PETSC(VecSet(none, 0.0));
+    scene_.multipliers->set(none);
+  }
+  const auto gone = go_to(from, *scene_.problem, *newton_, unknowns_);
+  if (!gone.converged) return gone;
+  auto outcome = solve_plainly();
+  outcome.add_effort(gone);
+  return outcome;
 }
 
 std::unique_ptr<Ladder> IncrementSolver::make_ladder() {

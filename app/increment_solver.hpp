@@ -7,6 +7,7 @@
 #include "solve/bounded_newton.hpp"
 #include "solve/condensed_newton.hpp"
 #include "solve/ladder.hpp"
+#include "solve/other_starts.hpp"
 #include "solve/uzawa.hpp"
 
 #include <functional>
@@ -41,8 +42,9 @@ class IncrementSolver {
   /// not get there. A solid that is not linear and has supports that move starts where the last accepted increment
   /// points to, unless an increment has failed since. Collective.
   SolveOutcome solve(double target);
-  /// What went on in the last solve that plain iterations did not get through; absent if there was none, or with
-  /// bounds.
+  /// The same from another start and without remedies. Not with bounds or conditions. Collective.
+  SolveOutcome solve_from(const OtherStart& start, double target);
+  /// What went on in the last solve that plain iterations did not get through; absent if there was none.
   const std::optional<Trouble>& trouble() const { return trouble_; }
   /// How often each of remedies() was tried and helped; empty if none ever was.
   std::vector<Ladder::Use> remedy_uses() const { return ladder_ ? ladder_->uses() : std::vector<Ladder::Use>{}; }

@@ -17,6 +17,7 @@
 #include "report.hpp"
 #include "restart.hpp"
 #include "scene.hpp"
+#include "solution_census.hpp"
 #include "solve/path_control.hpp"
 #include "solve/step_control.hpp"
 
@@ -85,7 +86,8 @@ class Run {
   std::unique_ptr<Ledger> ledger_;
   std::unique_ptr<FieldsWriter> fields_;
   std::unique_ptr<HistoryWriter> history_;
-  std::optional<PathRecord> path_; // absent unless the deck asks for the path error
+  std::optional<SolutionCensus> census_; // absent unless the deck asks for it
+  std::optional<PathRecord> path_;       // absent unless the deck asks for the path error
   std::size_t first_step_ = 0;
   std::optional<double> resume_time_;
   double first_time_ = 0.0, resume_increment_ = 0.0, resume_path_taken_ = 0.0;
@@ -112,6 +114,7 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments, Adaptation* adaptation)
       *scene_, [this] { return stop_requested_ = interrupted(comm_); },
       [this](const std::string& line) { log_.line("  " + line); });
   if (measures_path(scene_->deck)) path_.emplace();
+  if (scene_->deck.look_for_other_solutions) census_.emplace();
   if (MotionRecord::wanted(scene_->deck)) motion_.emplace();
   if (arguments_.restart) restart();
 }
@@ -353,6 +356,11 @@ PathDifference Run::difference(const SolvedState& whole, const std::vector<Solve
 
 /// Takes the state in the solver's unknowns; `path_error`: of the increment that ends here, zero if not measured.
 void Run::accept(const Stretch& stretch, const SolveOutcome& outcome, double path_error) {
+  if (census_) {
+    SolveOutcome effort;
+    if (const auto words = census_->look(*scene_, *solver_, outcome, effort); !words.empty()) log_.line("  " + words);
+    count(effort);
+  }
   ++increments_;
   const Vec unknowns = solver_->unknowns();
   ledger_->accept(unknowns);
@@ -500,6 +508,7 @@ int Run::finish(int status, const std::string& reason) {
                        {"external_work", ledger_->external_work()},
                        {"artificial_work", ledger_->artificial_work()},
                        {"external_work_uncertainty", ledger_->work_uncertainty()}};
+  if (census_) summary["other_solutions"] = census_->to_json();
   if (path_) summary["path"] = path_->to_json();
   summary["certificate"] = certificate_.to_json();
   judge_accuracy(summary);

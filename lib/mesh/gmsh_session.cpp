@@ -4,11 +4,13 @@
 #include "mesh/geo_script.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <gmsh.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace amontons {
@@ -114,6 +116,26 @@ void check_file(const MeshSource& source) {
                     " is not a gmsh mesh: it does not begin with $MeshFormat; save it from gmsh as version 4.1.");
   if (!source.parameters.empty())
     throw UserError(file + " takes no parameters, only a .geo does; remove mesh: parameters.");
+}
+
+/// gmsh 4.8 crashes over some damaged meshes, and would take the program with it. So a child process reads a .msh
+/// first; that costs the time of reading it once more. (A .geo has cells only once it is meshed.)
+void check_that_gmsh_survives(const std::string& file) {
+  const pid_t child = fork();
+  if (child == 0) {
+    for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
+      std::signal(number, SIG_DFL); // PETSc's handlers end all ranks
+    try {
+      gmsh::open(file);
+    } catch (...) { // what gmsh complains of, the reader in this process tells
+    }
+    _exit(0);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child) return; // no process to be had: read without this net
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    throw UserError("Mesh file " + in_quotes(file) +
+                    " is damaged: gmsh crashes when it reads it. Save it from gmsh again, as version 4.1.");
 }
 
 /// Orders of the elements (not points) of the model, ascending.
@@ -275,6 +297,8 @@ GmshSession::GmshSession(const std::map<std::string, double>& parameters) {
   gmsh::option::setNumber("General.Terminal", 0);
   // 1: stop meshing and only log; by default the API throws, also out of gmsh's OpenMP regions, which ends the program
   gmsh::option::setNumber("General.AbortOnError", 1);
+  gmsh::option::setNumber("Mesh.PartitionConvertMsh2", 0); // partitions of a .msh are not used, and gmsh 4.8 crashes
+                                                           // over some that make no sense
   gmsh::logger::start();
 }
 
@@ -298,6 +322,7 @@ void GmshSession::fail_on_errors(const std::string& doing, const std::string& th
 DeclaredGroups load_model(GmshSession& session, const MeshSource& source) {
   check_file(source);
   const bool script = source.file.ends_with(".geo");
+  if (!script) check_that_gmsh_survives(source.file);
   session.run("Mesh file " + in_quotes(source.file) + " cannot be read", [&] { gmsh::open(source.file); });
   const auto groups = script ? names_known_to_gmsh(session) : physical_names(source.file);
   if (source.free) {

@@ -4,6 +4,7 @@
 
 #include "mesh/build.hpp"
 
+#include <exception>
 #include <set>
 #include <string>
 #include <utility>
@@ -28,6 +29,8 @@ class GmshSession {
       work();
     } catch (const std::string& message) {
       thrown = message;
+    } catch (const std::exception& error) { // a size in the file that no memory holds: std::bad_alloc
+      thrown = error.what();
     }
     fail_on_errors(doing, thrown);
   }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <gmsh.h>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -132,7 +133,8 @@ std::vector<std::int32_t> Reader::groups_of_entity(int dim, int tag) const {
   gmsh::model::getPhysicalGroupsForEntity(dim, tag, tags);
   std::vector<std::int32_t> groups;
   for (const int group : tags)
-    groups.push_back(group_index_.at({dim, std::abs(group)}));
+    if (group != std::numeric_limits<int>::min()) // which is no group's number and has no absolute value
+      groups.push_back(group_index_.at({dim, std::abs(group)}));
   return groups;
 }
 

@@ -28,10 +28,17 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
+/// Files are closed here, so there is nothing for HDF5 to do at the end of the program, where it crashes over a file
+/// that could not be closed. Must be its first call.
+void leave_files_at_exit() { [[maybe_unused]] static const herr_t done = H5dont_atexit(); }
+
+bool a_file_is_stuck = false;
+
 /// HDF5 prints its error stack unless told not to; here a failure is an answer or becomes a message of ours.
 class Quiet {
  public:
   Quiet() {
+    leave_files_at_exit();
     H5Eget_auto2(H5E_DEFAULT, &printer_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
@@ -142,6 +149,7 @@ void Hdf5File::finish() {
     const bool closed = file_ < 0 || H5Fclose(file_) >= 0;
     file_ = H5I_INVALID_HID;
     expect(closed, "it cannot be closed");
+    if (!closed) a_file_is_stuck = true;
     if (!failed_) return;
     throw UserError("The file " + path_ + " cannot be " + (reads_ ? "read: " : "written: ") + failure_ +
                     (reads_ ? "." : ". Is the disk full? Make room or choose another directory with --out."));
@@ -290,6 +298,8 @@ bool Hdf5File::has_group(const std::string& path) {
   MPI_Bcast(&has, 1, MPI_INT, 0, comm_);
   return has != 0;
 }
+
+bool has_stuck_hdf5_file() { return a_file_is_stuck; }
 
 bool is_sound_hdf5(const std::string& path) {
   const Quiet quiet;

@@ -62,6 +62,10 @@ class Hdf5File {
   std::string failure_;
 };
 
+/// Whether a file on this rank could not be closed, as on a full disk. HDF5 (1.10) keeps it, tries again in
+/// MPI_Finalize and crashes: such a program must end by MPI_Abort. Serial.
+bool has_stuck_hdf5_file();
+
 /// Whether the HDF5 library can open the file: false for a missing, foreign, cut or damaged one. Serial.
 bool is_sound_hdf5(const std::string& path);
 

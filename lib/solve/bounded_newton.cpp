@@ -161,6 +161,22 @@ Vec BoundedNewton::contact_forces() {
   return forces_;
 }
 
+Trouble BoundedNewton::trouble() {
+  const auto outcome = outcome_of(snes_, problem_);
+  Trouble trouble;
+  trouble.solver = outcome.reason;
+  trouble.residual = outcome.residual;
+  const auto held = problem_.layout().new_vector();
+  if (whole_.residual(changed_, changed_residual_)) {
+    VecArray marks(held);
+    VecReader forces(contact_forces());
+    for (PetscInt i = 0; i < marks.size(); ++i)
+      marks[i] = forces[i] > 0.0 ? 1.0 : 0.0;
+  }
+  trouble.free = whole_.free_motions(held);
+  return trouble;
+}
+
 SolveOutcome BoundedNewton::solve(Vec unknowns) {
   kept_ = nullptr;
   const Phase phase("linear solver");

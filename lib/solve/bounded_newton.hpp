@@ -25,6 +25,9 @@ class BoundedNewton {
   /// From the state in `unknowns` (prescribed values already in place) to equilibrium. The bounds that were touched at
   /// the end of the last solve that converged are taken for touched at the start. Collective.
   SolveOutcome solve(Vec unknowns);
+  /// What the last solve, which failed, came to, and the bodies that neither supports nor closed contact hold then.
+  /// Collective.
+  Trouble trouble();
 
  private:
   static PetscErrorCode evaluate_residual(SNES, Vec changed, Vec result, void* self);

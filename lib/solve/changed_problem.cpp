@@ -57,6 +57,20 @@ bool ChangedProblem::residual(Vec changed, Vec result) {
 
 void ChangedProblem::to_changed(Vec unknowns, Vec changed) const { AMT_PETSC(MatMult(inverse_, unknowns, changed)); }
 
+/// K + T⁻ᵀ D T⁻¹, D the diagonal of Tᵀ K T where û is held: springs that are as stiff as the body there.
+std::vector<FreeMotion> ChangedProblem::free_motions(Vec held) const {
+  const auto springs = problem_.layout().new_vector();
+  AMT_PETSC(MatGetDiagonal(changed_tangent_, springs));
+  AMT_PETSC(VecPointwiseMult(springs, springs, held));
+  AMT_PETSC(VecSqrtAbs(springs));
+  MatHandle root, supported;
+  AMT_PETSC(MatDuplicate(inverse_, MAT_COPY_VALUES, root.put()));
+  AMT_PETSC(MatDiagonalScale(root, springs, nullptr));
+  AMT_PETSC(MatTransposeMatMult(root, root, MAT_INITIAL_MATRIX, PETSC_DEFAULT, supported.put()));
+  AMT_PETSC(MatAXPY(supported, 1.0, tangent_, DIFFERENT_NONZERO_PATTERN));
+  return find_free_motions(problem_, supported);
+}
+
 NullSpaceHandle ChangedProblem::modes() const {
   const auto motions = rigid_body_modes(problem_.layout());
   PetscInt count = 0;

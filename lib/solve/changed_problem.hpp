@@ -3,6 +3,9 @@
 #pragma once
 
 #include "form/problem.hpp"
+#include "solve/free_motions.hpp"
+
+#include <vector>
 
 namespace amontons {
 
@@ -28,6 +31,10 @@ class ChangedProblem {
   void to_changed(Vec unknowns, Vec changed) const;
   /// u = T û of the last residual or tangent.
   Vec unknowns() const { return unknowns_; }
+
+  /// Rigid motions of bodies that neither the last tangent nor the unknowns û that are held (one in `held`, else zero)
+  /// resist. Collective.
+  std::vector<FreeMotion> free_motions(Vec held) const;
 
   /// û of the rigid motions, orthonormal: the near-null space of Tᵀ K T. Collective.
   NullSpaceHandle modes() const;

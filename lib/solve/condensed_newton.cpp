@@ -193,6 +193,23 @@ PetscErrorCode CondensedNewton::test_convergence(SNES snes, PetscInt iteration, 
   });
 }
 
+Trouble CondensedNewton::trouble() {
+  const auto outcome = outcome_of(snes_, problem_);
+  Trouble trouble;
+  trouble.solver = outcome.reason;
+  trouble.residual = outcome.residual;
+  const auto held = problem_.layout().new_vector();
+  {
+    VecArray marks(held);
+    const PetscInt first = problem_.layout().first_equation();
+    for (const auto& rows : assembled_rows_)
+      for (int r = 0; r < rows.size; ++r)
+        if (is_replaced(rows, r) && rows.motion[r][r] != 0.0) marks[rows.equations[r] - first] = 1.0;
+  }
+  trouble.free = whole_.free_motions(held);
+  return trouble;
+}
+
 SolveOutcome CondensedNewton::solve(Vec unknowns) {
   const Phase phase("linear solver");
   factorizations_ = 0;

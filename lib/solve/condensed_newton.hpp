@@ -19,6 +19,9 @@ class CondensedNewton {
 
   /// From the state in `unknowns` (prescribed values already in place) to equilibrium. Collective.
   SolveOutcome solve(Vec unknowns);
+  /// What the last solve, which failed, came to, and the bodies that neither supports nor closed contact hold then.
+  /// Collective.
+  Trouble trouble();
   /// Gives the contact forms the tractions of a state that was solved before at the problem's time. Collective.
   void recover(Vec unknowns);
 

@@ -11,6 +11,7 @@
 #include "solve/kept_factorization.hpp"
 
 #include "base/timer.hpp"
+#include "solve/factor_memory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -192,6 +193,7 @@ bool KeptFactorization::factorize() {
   // MUMPS gives large counts as minus millions.
   price_ = operations / (operations_per_entry * (entries < 0 ? -1e6 * entries : std::max<PetscInt>(entries, 1)));
   if (error == MAT_FACTOR_NOERROR) return true;
+  refuse_lack_of_memory(factor_);
   factor_.reset();
   factorized_tangent_ = none;
   return false;

@@ -1,6 +1,7 @@
 #include "solve/newton.hpp"
 
 #include "base/timer.hpp"
+#include "solve/factor_memory.hpp"
 #include "solve/kept_factorization.hpp"
 
 #include <algorithm>
@@ -198,6 +199,7 @@ SolveOutcome outcome_of(SNES snes, const Problem& problem) {
   AMT_PETSC(SNESGetIterationNumber(snes, &newton));
   AMT_PETSC(SNESGetLinearSolveIterations(snes, &linear));
   AMT_PETSC(SNESGetFunctionNorm(snes, &norm));
+  if (reason == SNES_DIVERGED_LINEAR_SOLVE) refuse_lack_of_memory(snes);
   SolveOutcome outcome;
   outcome.interrupted = reason == SNES_BREAKOUT_INNER_ITER;
   outcome.converged = reason > 0 && !outcome.interrupted;

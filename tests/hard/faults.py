@@ -2,6 +2,9 @@
 """What may go wrong around a run: faults.py --program PATH [CASE...] [--count N].
 
 killed       SIGKILL at a random moment, N times: what is there then restarts and ends like the uninterrupted run
+rank_dies    SIGKILL for one of two ranks: the run ends, and restarts
+full_disk    files that may not grow: status 2, the message asks for room, and the run restarts
+memory       a factorization that gets too little: status 2, the estimate, what to change
 unwritable   an output directory that cannot be made: status 2, and the message names it
 checkpoints  N damaged checkpoints: refused with status 2, or harmless
 decks        N damaged decks, and meshes: any status of the manual, within the time limit, never a crash
@@ -10,8 +13,11 @@ Random choices have fixed seeds. Exit status 0 when all goes as it must.
 import argparse
 import concurrent.futures
 import csv
+import os
 import random
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -20,7 +26,7 @@ from pathlib import Path
 
 import yaml
 from run import SECONDS_HANGING, environment, start
-from scenes import SCENES
+from scenes import SCENES, confined_stack
 
 # Status 1 is a fault of the program or of PETSc; a signal is negative, or 128 and more through mpirun.
 STATUSES = (0, 2, 3, 4, 5)
@@ -53,39 +59,113 @@ def history(folder):
         return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
 
-def killed(options, folder, score):
-    def longer(deck):
-        deck["steps"] = [{"name": "cycle", "to": 6, "increments": 36}]
+class Cycle:
+    """A run with friction that is long enough to be stopped on the way, and what it ends with when it is not."""
 
-    deck = write(folder / "scene", "reversals", longer)
-    whole = start(options, 1, [deck, "--out", folder / "whole"])
-    score.expect("the uninterrupted run", whole.returncode == 0, whole.stdout)
-    wanted, chance = history(folder / "whole")[-1], random.Random(1)
-    forces = [key for key in wanted if key.startswith(("reaction", "contact")) and "force" in key or key.startswith("reaction")]
-    scale = max(abs(wanted[key]) for key in forces)
-    while_running = 0
+    def __init__(self, options, folder, score):
+        def longer(deck):
+            deck["steps"] = [{"name": "cycle", "to": 6, "increments": 36}]
+
+        self.options, self.score = options, score
+        self.deck = write(folder / "scene", "reversals", longer)
+        whole = start(options, 1, [self.deck, "--out", folder / "whole"])
+        score.expect("the uninterrupted run", whole.returncode == 0, whole.stdout)
+        self.wanted = history(folder / "whole")[-1]
+        self.forces = [key for key in self.wanted if key.startswith("reaction") or key.startswith("contact") and "force" in key]
+        self.scale = max(abs(self.wanted[key]) for key in self.forces)
+
+    def begin(self, out, ranks, rows):
+        """A process with so many increments in its history, or one that has ended, and the numbers of its ranks."""
+        mpirun = [*self.options.mpirun.split(), "-n", str(ranks)] if ranks > 1 else []
+        # Writing beyond a limit is to be an error as on a full disk, and no signal.
+        command = [*mpirun, "sh", "-c", 'trap "" XFSZ; exec "$@"', "sh", self.options.program, str(self.deck), "--out", str(out)]
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment(), text=True)
+        file = out / "history.csv"
+        while process.poll() is None and (not file.exists() or file.read_bytes().count(b"\n") <= rows):
+            time.sleep(0.001)
+        if ranks == 1 or process.poll() is not None:
+            return process, [process.pid]
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="utf-8").split()
+        return process, [int(child) for child in children]
+
+    def goes_on(self, name, out, ranks):
+        """Restarted from its checkpoint, the run in the folder ends like the uninterrupted one."""
+        done = start(self.options, ranks, [self.deck, "--out", out, "--restart", out / "checkpoint.h5"])
+        self.score.expect(f"{name}: the restart ends with 0", done.returncode == 0, done.stdout[-500:] + done.stderr[-500:])
+        if done.returncode == 0:
+            rows = history(out)
+            error = max(abs(rows[-1][key] - self.wanted[key]) for key in self.forces) / self.scale
+            self.score.expect(f"{name}: same forces at the end", error <= 1e-10, f"off by {error:.1e}")
+            self.score.expect(f"{name}: no increment is missing or doubled", len(rows) == 36, f"{len(rows)} rows")
+
+
+def killed(options, folder, score):
+    cycle, chance, while_running, restarted = Cycle(options, folder, score), random.Random(1), 0, 0
     for i in range(options.count):
         out = folder / f"killed_{i}"
-        command = [options.program, str(deck), "--out", str(out)]
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment())
-        rows = chance.randint(1, 30)  # killed a moment after so many of the 36 increments
-        while process.poll() is None and (not (out / "history.csv").exists() or (out / "history.csv").read_bytes().count(b"\n") <= rows):
-            time.sleep(0.001)
+        process, _ = cycle.begin(out, 1, chance.randint(1, 30))  # killed a moment after so many of the 36 increments
         time.sleep(chance.uniform(0, 0.02))
         while_running += process.poll() is None
         process.kill()
-        process.wait()
-        if not (out / "checkpoint.h5").exists():  # killed before the first: nothing to go on from, nothing damaged
-            continue
-        done = start(options, 1, [deck, "--out", out, "--restart", out / "checkpoint.h5"])
-        score.expect(f"kill {i}: the restart ends with 0", done.returncode == 0, done.stdout[-500:] + done.stderr[-500:])
-        if done.returncode == 0:
-            rows = history(out)
-            error = max(abs(rows[-1][key] - wanted[key]) for key in forces) / scale
-            score.expect(f"kill {i}: same forces at the end", error <= 1e-10, f"off by {error:.1e}")
-            score.expect(f"kill {i}: no increment is missing or doubled", len(rows) == 36, f"{len(rows)} rows")
+        process.communicate()
+        if (out / "checkpoint.h5").exists():  # not there: killed before the first, and nothing is damaged
+            restarted += 1
+            cycle.goes_on(f"kill {i}", out, 1)
     score.expect("runs were killed while running", while_running > 0)
-    print(f"killed: {while_running} of {options.count} runs were killed before their end")
+    print(f"killed: {while_running} of {options.count} runs were killed before their end, {restarted} had a checkpoint and were restarted")
+
+
+def rank_dies(options, folder, score):
+    """One rank of two is killed: the other ends, too, and the run goes on on one rank."""
+    cycle, chance = Cycle(options, folder, score), random.Random(4)
+    for i in range(2):
+        out = folder / f"dead_{i}"
+        process, numbers = cycle.begin(out, 2, chance.randint(5, 25))
+        score.expect("there are two ranks", len(numbers) == 2, numbers)
+        os.kill(numbers[i], signal.SIGKILL)
+        try:
+            process.communicate(timeout=SECONDS_HANGING)
+        except subprocess.TimeoutExpired:
+            process.kill()
+        score.expect(f"rank {i} dies: the run ends, and not well", process.returncode not in (None, 0, *STATUSES), process.returncode)
+        cycle.goes_on(f"rank {i} dies", out, 1)
+
+
+def full_disk(options, folder, score):
+    """No file may grow beyond a size (what the kernel says then is like a full disk, and needs no disk): status 2 and
+    the reason; with room again the run goes on."""
+    cycle = Cycle(options, folder, score)
+    for i, (size, ranks) in enumerate([(8_000, 1), (60_000, 1), (60_000, 2), (150_000, 1)]):
+        out, name = folder / f"full_{i}", f"{size} bytes on {ranks} ranks"
+        process, numbers = cycle.begin(out, ranks, 1)
+        for number in numbers:
+            resource.prlimit(number, resource.RLIMIT_FSIZE, (size, size))
+        _, said = process.communicate(timeout=SECONDS_HANGING)
+        score.expect(f"{name}: status 2", process.returncode == 2, f"{process.returncode} {said[-500:]}")
+        score.expect(f"{name}: says why", "Is the disk full?" in said, said[-500:])
+        if (out / "checkpoint.h5").exists():
+            cycle.goes_on(name, out, 1)
+
+
+def memory(options, folder, score):
+    """A factorization that gets less memory than it needs: status 2, the estimate, and what to change."""
+
+    def run(name, words, mends, ranks=1, **shape):
+        scene = folder / name
+        scene.mkdir(parents=True)
+        mesh, deck, _ = confined_stack(0, **shape)
+        mesh.write(scene / "mesh.msh")
+        (scene / "deck.yaml").write_text(yaml.safe_dump(deck, sort_keys=False), encoding="utf-8")
+        done = start(options, ranks, [scene / "deck.yaml", "--out", scene / "results", *words])
+        score.expect(f"{name}: status 2", done.returncode == 2, f"{done.returncode} {done.stderr[-500:]}")
+        for word in ("ran out of memory", "MB in all", "-mat_mumps_icntl_22", mends):
+            score.expect(f"{name}: says '{word}'", word in done.stderr, done.stderr[-500:])
+
+    cells = ((60, 60), (40, 40))  # 11,000 unknowns: about 12 MB
+    run("limit", ["-mat_mumps_icntl_23", "2"], "allows 2 MB", cells=cells)
+    run("limit_on_2_ranks", ["-mat_mumps_icntl_23", "1"], "allows 1 MB", ranks=2, cells=cells)
+    run("limit_of_kept_factors", ["-mat_mumps_icntl_23", "2", "-pc_type", "shell"], "allows 2 MB", cells=cells)
+    run("nothing_to_spare", ["-mat_mumps_icntl_14", "-90"], "-mat_mumps_icntl_14")
 
 
 def unwritable(options, folder, score):
@@ -165,7 +245,7 @@ def decks(options, folder, score):
     print("decks and meshes:", crowd(options, score, jobs, STATUSES))
 
 
-CASES = {"killed": killed, "unwritable": unwritable, "checkpoints": checkpoints, "decks": decks}
+CASES = {"killed": killed, "rank_dies": rank_dies, "full_disk": full_disk, "memory": memory, "unwritable": unwritable, "checkpoints": checkpoints, "decks": decks}
 
 
 def main():

@@ -10,7 +10,7 @@ from meshes import Mesh
 
 E, NU = 100.0, 0.3
 SCENES = {}
-FRICTIONAL, FRICTIONLESS = ("semismooth", "uzawa", "penalty"), ("semismooth", "uzawa", "penalty", "vi")
+FRICTIONAL, FRICTIONLESS = ("semismooth", "dual", "uzawa", "penalty"), ("semismooth", "dual", "uzawa", "penalty", "vi")
 
 
 @dataclass
@@ -184,7 +184,7 @@ def solid_stack(seed, cells):
 @scene("all points slip", FRICTIONAL, name="slide_mu_0.1", mu=0.1)
 @scene("all points slip, the edge in front digs in", FRICTIONAL, name="slide_mu_0.5", mu=0.5)
 @scene("as much shear as pressure", FRICTIONAL, name="slide_mu_1", mu=1.0)
-# Not with penalty, where a point at the edge still sticks at this shear.
+# Not with penalty and the dual basis, where a point at the edge still sticks at this shear.
 @scene("friction beyond the uniqueness bounds", ("semismooth", "uzawa"), name="slide_mu_2", mu=2.0)
 @scene("press and slide in one increment", FRICTIONAL, name="press_and_slide_at_once", mu=0.5, press="t", slide="t", to=1)
 @scene("slip reverses at every increment", FRICTIONAL, name="reversals", mu=0.3, slide="cos(pi*t)", to=6)
@@ -265,7 +265,7 @@ def squeezed_between_walls(seed):
     return mesh, whole, check
 
 
-@scene("a diamond in a groove: two slopes hold it, and they share its corner", ("semismooth", "uzawa", "penalty"))
+@scene("a diamond in a groove: two slopes hold it, and they share its corner", FRICTIONAL)
 def corner_in_groove(seed):
     mesh = Mesh(seed)
     mesh.box("block", (0, 0), (1, 1), (4, 4))
@@ -300,15 +300,19 @@ def plank_on_supports(seed):
     return mesh, whole, check
 
 
-@scene("a wedge that stays in its slot when let go: not the only solution", FRICTIONAL)
-def wedge(seed):
-    mesh, slope = Mesh(seed), 0.1  # half-angle 5.7 degrees, mu 0.5: self-locking
+def wedge_in_slot(seed, mu):
+    mesh, slope = Mesh(seed), 0.1  # half-angle 5.7 degrees: locks itself from mu = 0.1 on
     mesh.box("block", (-0.5, 0), (0.5, 1), (12, 12), bend=lambda x: np.array([x[0] * (1 + 2 * slope * x[1]), x[1], 0]))
     contact = [
-        pair("block_left", plane((-0.5, 0), (1, slope)), "west", 0.5, False),
-        pair("block_right", plane((0.5, 0), (-1, slope)), "east", 0.5, False),
+        pair("block_left", plane((-0.5, 0), (1, slope)), "west", mu, False),
+        pair("block_right", plane((0.5, 0), (-1, slope)), "east", mu, False),
     ]
-    whole = deck({"block": (E, NU)}, [push("block_top", "5*min(t,2-t)")], contact, ((1, 2), (2, 2)))
+    return mesh, deck({"block": (E, NU)}, [push("block_top", "5*min(t,2-t)")], contact, ((1, 2), (2, 2)))
+
+
+@scene("a wedge that stays in its slot when let go", FRICTIONAL)
+def wedge(seed):
+    mesh, whole = wedge_in_slot(seed, 0.5)
 
     def check(run):
         west, east = (np.array(run.summary["contact"][name]["force"]) for name in ("west", "east"))
@@ -318,14 +322,38 @@ def wedge(seed):
     return mesh, whole, check
 
 
+# Without load the block also fits the slot unstrained, without any force: a wedge that locks has two solutions at the
+# end, one that does not lock has this one only. On the way the load is there, and one solution.
+HOLDING = ("semismooth", "uzawa", "penalty")
+
+
+@scene("let go, a wedge that locks has two solutions: the program must say so", HOLDING, name="wedge_two_solutions", mu=0.5, several=1)
+@scene("a wedge below the critical friction: the program must not see two solutions", HOLDING, name="wedge_one_solution", mu=0.05, several=0)
+def wedge_counted(seed, mu, several):
+    mesh, whole = wedge_in_slot(seed, mu)
+    whole["look_for_other_solutions"] = True
+
+    def check(run):
+        found = run.summary["other_solutions"]
+        yield "all increments looked at", abs(found["increments_looked_at"] - 4), 0
+        yield f"{several} of them with several solutions", abs(found["increments_with_several_solutions"] - several), 0
+        yield "solutions of the last", abs(found["most_solutions_found"] - 1 - several), 0
+        if several:
+            yield "it is the last", abs(found.get("first_time", 0) - 2), 1e-12
+            yield "the other lets go", float(found.get("largest_difference", {}).get("pressure", 0) < 0.3), 0
+
+    return mesh, whole, check
+
+
 # --- shapes
 
 
-def bent_pair(seed, rise, press, mu=None, cells=((4, 2), (6, 2))):
-    """Lower block with the top at 0.5 + rise(x), upper one with the bottom there, too; pressed by `press` along y."""
+def bent_pair(seed, rise, press, mu=None, cells=((4, 2), (6, 2)), column=lambda x: x):
+    """Lower block with the top at 0.5 + rise(x), upper one with the bottom there, too; pressed by `press` along y.
+    `column` puts the nodes of a column at another x."""
     mesh = Mesh(seed)
-    mesh.box("lower", (0, 0), (1, 0.5), cells[0], bend=lambda x: x + np.array([0, rise[0](x[0]) * x[1] / 0.5, 0]))
-    mesh.box("upper", (0, 0.5), (1, 1), cells[1], bend=lambda x: x + np.array([0, rise[1](x[0]) * (1 - x[1]) / 0.5, 0]))
+    mesh.box("lower", (0, 0), (1, 0.5), cells[0], bend=lambda x: np.array([column(x[0]), x[1] + rise[0](column(x[0])) * x[1] / 0.5, 0]))
+    mesh.box("upper", (0, 0.5), (1, 1), cells[1], bend=lambda x: np.array([column(x[0]), x[1] + rise[1](column(x[0])) * (1 - x[1]) / 0.5, 0]))
     boundary = [hold("lower_bottom", x=0, y=0), hold("upper_top", x=0, y=f"-{press}*t")]
     return mesh, deck({"lower": (E, NU), "upper": (E, NU)}, boundary, [pair("upper_bottom", "lower_top", mu=mu)])
 
@@ -350,11 +378,13 @@ def kinked(seed, kink, mu=None):
 
 @scene("bodies that touch at one point", name="touch_at_a_point")
 @scene("bodies that touch at one point, with friction", FRICTIONAL, name="touch_at_a_point_friction", mu=0.3)
-@scene("zig-zag on zig-zag: normals that jump from facet to facet", name="zigzag", wave=(0.03, 8))
-def bulges(seed, mu=None, wave=None):
-    if wave:
-        rise = lambda x: wave[0] * np.cos(wave[1] * np.pi * x)  # noqa: E731
-        mesh, whole = bent_pair(seed, (rise, rise), 0.02, mu, ((8, 2), (16, 2)))
+@scene("zig-zag on zig-zag: normals that jump from facet to facet", name="zigzag", teeth=8)
+def bulges(seed, mu=None, teeth=None):
+    if teeth:  # with nodes of both sides at every kink, so that the surfaces are the same on any mesh
+        rise = lambda x: 0.03 - 0.06 * abs((teeth * x + 1) % 2 - 1)  # noqa: E731
+        kink = lambda x: round(teeth * x) / teeth  # noqa: E731
+        column = lambda x: kink(x) if abs(x - kink(x)) < 0.25 / teeth else x  # noqa: E731
+        mesh, whole = bent_pair(seed, (rise, rise), 0.02, mu, ((teeth, 2), (2 * teeth, 2)), column)
     else:
         mesh, whole = bent_pair(seed, (lambda x: -0.4 * (x - 0.5) ** 2, lambda x: 0.4 * (x - 0.5) ** 2), 0.05, mu, ((15, 4), (20, 4)))
     return mesh, whole, push_and_answer
@@ -365,8 +395,8 @@ def bulges(seed, mu=None, wave=None):
 @scene("half of the slave is beside the master", name="corner_over_corner", where=(0.5, 1.5))
 def edges(seed, where):
     mesh = Mesh(seed)
-    mesh.box("lower", (0, 0), (1, 0.5), (5, 3))
-    mesh.box("upper", (where[0], 0.5), (where[1], 0.8), (6, 2))
+    mesh.box("lower", (0, 0), (1, 0.5), (10, 5))
+    mesh.box("upper", (where[0], 0.5), (where[1], 0.8), (16, 3))
     boundary = [hold("lower_bottom", x=0, y=0), {"on": "upper_top", "displacement": {"x": 0}, "resultant": {"y": "-2*t"}}]
     whole = deck({"lower": (E, NU), "upper": (E, NU)}, boundary, [pair("upper_bottom", "lower_top")])
     return mesh, whole, lambda run: [force_is(run, "pair", [0, 2.0])]
