@@ -99,6 +99,7 @@ class Newton {
   static PetscErrorCode search_energy(SNESLineSearch search, void* self);
   void observe(double norm);
   void predict(Vec unknowns);
+  void forget_failed_factorization();
 
   Problem& problem_;
   std::function<bool()> interrupted_;
