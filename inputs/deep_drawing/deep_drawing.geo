@@ -4,7 +4,7 @@ DefineConstant[
   blank = {36, Name "radius of the blank"},
   t = {1, Name "thickness of the blank"},
   inside = {22, Name "inner radius of the blank holder"},
-  n = {36, Name "cells along the radius"},
+  n = {24, Name "cells along the radius"},
   layers = {1, Name "cells through the thickness"}
 ];
 Point(1) = {0, 0, 0};

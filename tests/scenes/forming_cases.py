@@ -140,7 +140,88 @@ def wheel_turn(bench):
     bench.below("2 ranks: shear in the whole history", np.abs(along - other[0]).max() / np.abs(along).max(), 1e-8)
 
 
+# --- a cup drawn from a round sheet -----------------------------------------------------------------------------------
+
+BLANK, WALL, DIE_OPENING = 36.0, 20.7, 21.4  # radii: of the blank, of the middle of the cup's wall, of the die's opening
+
+
+def sheet(results):
+    """Reference radius, present lower and upper places of the nodes across the sheet, from the axis outwards."""
+    x = results.places
+    now = (x + results.nodal["displacement"])[:, :2]
+    faces = []
+    for height in (0.0, 1.0):
+        face = np.flatnonzero(results.in_body("sheet") & (np.abs(x[:, 1] - height) < 1e-9))
+        faces.append(face[np.argsort(x[face, 0])])
+    return x[faces[0], 0], now[faces[0]], now[faces[1]]
+
+
+def thickness(results):
+    """Reference radii, and thickness there; the first one was 1."""
+    radius, lower, upper = sheet(results)
+    return radius, np.linalg.norm(upper - lower, axis=1)
+
+
+def rim_radius(results):
+    _, lower, upper = sheet(results)
+    return 0.5 * (lower[-1, 0] + upper[-1, 0])
+
+
+def punch_force(results, way):
+    return -np.interp(way, results.history["time"], results.history["contact_punch_force_y"])
+
+
+def drawing_bounds(results, rim):
+    """Force on the punch once the wall is upright and the rim at `rim`: below and above (R. Hill, The Mathematical Theory
+    of Plasticity (1950), XI.3; E. Siebel, Stahl und Eisen 74 (1954) 155-158). In the flange d(sigma_r)/dr = -c Y / r with
+    c = 1 (uniaxial) to 2 / sqrt(3) (plane strain); what is at r was at sqrt(r^2 + R0^2 - R^2). Above there are the
+    holder's friction, the rope's factor exp(mu pi / 2) of the die's edge, and bending there and back."""
+    law = results.deck["materials"]["sheet_steel"]["elastic_plastic"]["hardening"]["swift"]
+    flow = lambda p: law["K"] * (law["eps_0"] + p) ** law["n"]
+    mu, hold, die_radius = 0.1, 10.0, 5.0
+    r = np.linspace(WALL, rim, 400)
+    rise = flow(np.log(np.sqrt(r**2 + BLANK**2 - rim**2) / r)) / r
+    stress = np.sum(0.5 * (rise[1:] + rise[:-1]) * np.diff(r))
+    bending = flow(np.log(BLANK / WALL)) / (2.0 * die_radius + 1.0)
+    above = (2.0 / np.sqrt(3.0) * stress + mu * hold / (np.pi * rim)) * np.exp(0.5 * np.pi * mu) + bending
+    return 2.0 * np.pi * WALL * stress, 2.0 * np.pi * WALL * above
+
+
+def check_cup(bench, results):
+    for way in (10.0, 15.0):
+        state = results.at(way)
+        rim = rim_radius(state)
+        below, above = drawing_bounds(results, rim)
+        force = punch_force(results, way)
+        bench.below(f"{way:g} mm: least force / force on the punch", below / force, 1.0)
+        bench.below(f"{way:g} mm: force on the punch / bound above", force / above, 1.0)
+        # Hoop compression alone at the rim: the other two strains are half of it.
+        bench.close(f"{way:g} mm: thickness of the rim", thickness(state)[1][-1], np.sqrt(BLANK / rim), 0.01)
+    radius, thick = thickness(results)
+    bench.below("rim / radius of the die's opening (all of it is drawn through)", rim_radius(results) / DIE_OPENING, 1.0)
+    bench.close("thickness of the rim in the end", thick[-1], np.sqrt(BLANK / rim_radius(results)), 0.02)
+    bench.below("place of the thinnest sheet: its first radius / that of the punch", radius[thick.argmin()] / 20.0, 1.05)
+    bench.below("the same from below: 15 / first radius", 15.0 / radius[thick.argmin()], 1.05)
+    bench.below("thinnest", thick.min(), 0.97)
+    bench.below("0.85 / thinnest", 0.85 / thick.min(), 1.0)
+    work, stored, dissipated = (results.history[f"energy_{name}"][-1] for name in ("external_work", "stored", "dissipated"))
+    bench.below("work not accounted for / work", abs(work - stored - dissipated) / work, 0.003)
+
+
+def deep_drawing_cup(bench):
+    """Drawn to the end: force and thickness."""
+    check_cup(bench, bench.run("deep_drawing", ranks=1))
+
+
+def deep_drawing_ranks(bench):
+    """The same cup on one rank and on two."""
+    one, two = (bench.run("deep_drawing", ranks=ranks) for ranks in (1, 2))
+    for way in (5.0, 10.0, 15.0, 20.0):
+        bench.close(f"{way:g} mm: force on the punch", punch_force(two, way), punch_force(one, way), 0.005)
+
+
 CASES = {
     "upsetting": {"smooth": upsetting_smooth, "rough": upsetting_rough},
     "rolling_wheel": {"braked": wheel_braked, "turn": wheel_turn},
+    "deep_drawing": {"cup": deep_drawing_cup, "ranks": deep_drawing_ranks},
 }

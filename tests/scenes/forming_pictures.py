@@ -62,7 +62,40 @@ def rolling_wheel(bench):
     return figure
 
 
-SCENES = {function.__name__: function for function in (upsetting, rolling_wheel)}
+def deep_drawing(bench):
+    results = bench.run("deep_drawing")
+    figure, axes = plt.subplots(2, 2, figsize=(9, 6.6), layout="constrained")
+    for panel, way in zip(axes[0], (15.0, 30.0)):
+        state = results.at(way)
+        draw_deformed(panel, state, state.nodal["accumulated_plastic_strain"].ravel(), "plastic strain", ((1, 1), (-1, 1)))
+        angle = np.linspace(0.0, 0.5 * np.pi, 30)
+        for mirror in (1, -1):
+            die = np.concatenate([[[41, 0]], np.c_[26.4 - 5 * np.sin(angle), -5 + 5 * np.cos(angle)], [[21.4, -30]]])
+            punch = np.concatenate([[[0, 1 - way]], np.c_[15 + 5 * np.sin(angle), 6 - way - 5 * np.cos(angle)], [[20, 8]]])
+            for tool in (die, punch):
+                panel.plot(mirror * tool[:, 0], tool[:, 1], "k", lw=0.8)
+        panel.set_title(f"way of the punch {way:g} mm")
+    left, right = axes[1]
+    time = results.history["time"]
+    left.plot(time, -results.history["contact_punch_force_y"], color=SIMULATION["color"], label="punch")
+    for way in (10.0, 15.0):
+        bounds = cases.drawing_bounds(results, cases.rim_radius(results.at(way)))
+        left.plot([way, way], bounds, "_-", ms=12, **REFERENCE, label="bounds of slab theory" if way == 10.0 else None)
+    left.set_xlabel("way of the punch, mm")
+    left.set_ylabel("force, kN")
+    left.set_ylim(0.0)
+    left.legend(fontsize=8)
+    for way, shade in zip((10.0, 20.0, 30.0), ("0.7", "0.4", SIMULATION["color"])):
+        right.plot(*cases.thickness(results.at(way)), color=shade, label=f"{way:g} mm")
+        rim = cases.rim_radius(results.at(way))
+        right.plot(cases.BLANK, np.sqrt(cases.BLANK / rim), "s", color=REFERENCE["color"], label="rim: √(R0 / R)" if way == 10.0 else None)
+    right.set_xlabel("radius on the blank, mm")
+    right.set_ylabel("thickness, mm")
+    right.legend(fontsize=8)
+    return figure
+
+
+SCENES = {function.__name__: function for function in (upsetting, rolling_wheel, deep_drawing)}
 
 
 def main():
