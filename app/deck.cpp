@@ -108,11 +108,20 @@ TaggedRule<MasterDeck> master_rule() {
                 "Direction of the axis; with space: solid only, and required there.")
       .required("radius", &CylinderDeck::radius, number("length", Range::above(0)), "Radius.")
       .optional("displacement", &CylinderDeck::displacement, components("length"), moves);
+  ObjectRule<CornerDeck> corner;
+  corner.required("point", &CornerDeck::point, point(), "A point of the edge as it would be without the rounding.")
+      .required("normals", &CornerDeck::normals, list_of(direction(), 2, 2),
+                "Directions out of the rigid body of the two faces that meet in the edge.")
+      .required("radius", &CornerDeck::radius, number("length", Range::above(0)), "Radius of the rounding.")
+      .optional("displacement", &CornerDeck::displacement, components("length"), moves);
   TaggedRule<MasterDeck> rule;
   rule.bare(located(text(group_meaning)))
       .tag("plane", plane, "Rigid half-space.")
       .tag("sphere", sphere, "Rigid ball; a disc in plane strain and plane stress.")
-      .tag("cylinder", cylinder, "Rigid cylinder of infinite length; a disc in plane strain and plane stress.");
+      .tag("cylinder", cylinder, "Rigid cylinder of infinite length; a disc in plane strain and plane stress.")
+      .tag("corner", corner,
+           "Rigid body with two plane faces and a rounded convex edge between them, such as a die or a punch; when "
+           "axisymmetric, its turned form: one face a cone, a cylinder or a disc.");
   return rule;
 }
 

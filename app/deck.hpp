@@ -62,7 +62,14 @@ struct CylinderDeck {
   double radius = 0.0;
   VectorDeck displacement;
 };
-using MasterDeck = std::variant<Located<std::string>, PlaneDeck, SphereDeck, CylinderDeck>;
+/// A convex edge between two planes, rounded.
+struct CornerDeck {
+  std::vector<double> point; // of the edge before it is rounded
+  std::vector<std::vector<double>> normals;
+  double radius = 0.0;
+  VectorDeck displacement;
+};
+using MasterDeck = std::variant<Located<std::string>, PlaneDeck, SphereDeck, CylinderDeck, CornerDeck>;
 
 struct PenaltyDeck {
   double alpha = 30.0;

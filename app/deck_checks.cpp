@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <set>
 
 namespace amontons {
@@ -191,6 +192,14 @@ bool is_zero(const std::vector<double>& vector) {
   return std::all_of(vector.begin(), vector.end(), [](double component) { return component == 0.0; });
 }
 
+/// Have the two vectors one direction, or opposite ones? Zero has none of its own and is parallel to nothing.
+bool are_parallel(const std::vector<double>& one, const std::vector<double>& other) {
+  const auto dot = [](const auto& a, const auto& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); };
+  if (one.size() != other.size() || is_zero(one) || is_zero(other)) return false;
+  const double cosine_squared = dot(one, other) * dot(one, other) / (dot(one, one) * dot(other, other));
+  return 1.0 - cosine_squared < 1e-12;
+}
+
 /// Checks of one rigid shape, written under `tag` of contact[i].master.
 struct ShapeCheck {
   const Check& check;
@@ -241,9 +250,17 @@ struct ShapeCheck {
     if (check.deck.space == Space::Axisymmetric)
       fail("centre", ": there is no rigid cylinder with space: axisymmetric. Use a sphere or a plane.");
   }
+  void operator()(const CornerDeck& corner) const {
+    length("point", corner.point);
+    displacement(corner.displacement);
+    for (const auto& normal : corner.normals)
+      direction("normals", normal);
+    if (are_parallel(corner.normals[0], corner.normals[1]))
+      fail("normals", " are parallel, so the faces do not meet in an edge. Give two directions, or use a plane.");
+  }
 };
 
-const std::string shape_tags[] = {"", "plane", "sphere", "cylinder"}; // in the order of MasterDeck
+const std::string shape_tags[] = {"", "plane", "sphere", "cylinder", "corner"}; // in the order of MasterDeck
 
 bool is_bound(const EnforceDeck& enforce) { return std::holds_alternative<ViDeck>(enforce); }
 

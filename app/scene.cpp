@@ -95,6 +95,12 @@ std::variant<std::string, RigidMaster> make_master(const MasterDeck& master) {
                    return RigidMaster{
                        RigidCylinder{padded(cylinder.centre), unit(padded(cylinder.axis)), cylinder.radius},
                        cylinder.displacement};
+                 },
+                 [](const CornerDeck& corner) -> Result {
+                   return RigidMaster{rounded_corner(padded(corner.point),
+                                                     {unit(padded(corner.normals[0])), unit(padded(corner.normals[1]))},
+                                                     corner.radius),
+                                      corner.displacement};
                  }},
       master);
 }

@@ -148,7 +148,8 @@ void ContactForm::evaluate(const State& state) {
     active_[i] = points[i].master != ContactPoint::none && normal_traction_derivative(augmented_[i]) > 0.0;
     touches = touches || active_[i];
   }
-  if (state.first_guess && !any_of_all(layout_.mesh().comm, touches)) guess_contact();
+  if (state.first_guess && !any_of_all(layout_.mesh().comm, touches))
+    guess_contact(pair_.holds_floating_body && !was_moved_);
   if (!holds_.empty()) apply_holds();
   if (tangential_) evaluate_friction(state);
 }
@@ -160,15 +161,33 @@ void ContactForm::evaluate_friction(const State& state) {
   tangential_->evaluate(state, normal_traction_, active_);
 }
 
+/// Has anything of the slave been displaced, and of a meshed master? Collective.
+bool ContactForm::both_moved(std::span<const double> displacement) const {
+  const auto& mesh = layout_.mesh();
+  const auto moved = [&](const std::string& surface) {
+    const auto& nodes = mesh.node_groups.at(surface);
+    const auto is_displaced = [&](std::int32_t node) {
+      const auto u = displacement.subspan(std::size_t(node) * mesh.dim, mesh.dim);
+      return std::any_of(u.begin(), u.end(), [](double component) { return component != 0.0; });
+    };
+    return any_of_all(mesh.comm, !displacement.empty() && std::any_of(nodes.begin(), nodes.end(), is_displaced));
+  };
+  const auto* master = std::get_if<std::string>(&pair_.master);
+  const bool slave_moved = moved(pair_.slave);
+  return master ? moved(*master) && slave_moved : slave_moved;
+}
+
 /// Nothing touches: take the points where the surfaces are nearest for closed, for one residual and one tangent, when
-/// the surfaces (nearly) touch or a body has nothing else to hold it. The next iteration decides by the true test.
-void ContactForm::guess_contact() {
+/// the surfaces (nearly) touch, or `at_any_distance` for a body that has nothing else to hold it. The next iteration
+/// decides by the true test. A body that has moved and was in equilibrium
+/// without this pair is held by another one; closing this one would throw the first iterate far off.
+void ContactForm::guess_contact(bool at_any_distance) {
   const auto& points = points_.points();
   double nearest = 1e300;
   for (std::size_t i = 0; i < points.size(); ++i)
     nearest = std::min(nearest, gap_[i] / points[i].size);
   MPI_Allreduce(MPI_IN_PLACE, &nearest, 1, MPI_DOUBLE, MPI_MIN, layout_.mesh().comm);
-  if (nearest > guess_reach && !pair_.holds_floating_body) return;
+  if (nearest > guess_reach && !at_any_distance) return;
   for (std::size_t i = 0; i < points.size(); ++i)
     active_[i] = points[i].master != ContactPoint::none && gap_[i] / points[i].size <= nearest + guess_reach;
 }
@@ -380,6 +399,7 @@ void ContactForm::commit(const State& state) {
   evaluate(state);
   remember(state);
   multipliers_old_ = multipliers_;
+  was_moved_ = both_moved(state.displacement);
   if (tangential_) tangential_->commit(state);
 }
 
@@ -402,6 +422,7 @@ void ContactForm::restore(const ContactHistory& history) {
   multipliers_ = multipliers_old_ = history.multipliers;
   normals_old_ = history.normals;
   if (points_.is_following()) points_.restore(history.displacement);
+  was_moved_ = both_moved(history.displacement);
   if (tangential_) tangential_->restore(history);
   assembled_ = false;
 }

@@ -88,7 +88,8 @@ class ContactForm : public Form, public PairReport, public Switching {
   bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
   void evaluate(const State& state);
   void fetch_multipliers(const State& state);
-  void guess_contact();
+  bool both_moved(std::span<const double> displacement) const;
+  void guess_contact(bool at_any_distance);
   void apply_holds();
   void evaluate_friction(const State& state);
   double gap_at(const ContactPoint& point, const State& state) const;
@@ -143,8 +144,9 @@ class ContactForm : public Form, public PairReport, public Switching {
   std::vector<double> gap_, lambda_, augmented_;
   std::vector<std::uint8_t> active_, assembled_active_, coupled_;
   bool assembled_ = false;
-  std::vector<Hold> holds_;                              // empty: none
-  std::vector<std::uint8_t> wanted_;                     // active_ before holds
+  bool was_moved_ = false;           // both sides of the pair, in the last accepted state; the same on every rank
+  std::vector<Hold> holds_;          // empty: none
+  std::vector<std::uint8_t> wanted_; // active_ before holds
   std::vector<std::vector<PetscInt>> coupled_equations_; // finite kinematics: of masters, sorted, per slave facet
   std::unique_ptr<TangentialPart> tangential_;
   std::vector<double> normal_traction_; // for it

@@ -1,4 +1,4 @@
-// Rigid obstacles given by formula: signed distance and normal of a plane, a ball, a cylinder.
+// Rigid obstacles given by formula: signed distance and normal of a plane, a ball, a cylinder, a rounded corner.
 #pragma once
 
 #include <array>
@@ -23,7 +23,17 @@ struct RigidCylinder {
   std::array<double, 3> axis{};
   double radius = 0.0;
 };
-using RigidShape = std::variant<RigidPlane, RigidSphere, RigidCylinder>;
+/// Two half-spaces' common part, convex, its edge rounded: the profile of a die or a punch. In 2D the edge is a point.
+struct RigidCorner {
+  std::array<double, 3> centre{};                 // of the rounding
+  std::array<std::array<double, 3>, 2> normals{}; // of the two faces (unit, not parallel), out of the rigid body
+  double radius = 0.0;
+};
+using RigidShape = std::variant<RigidPlane, RigidSphere, RigidCylinder, RigidCorner>;
+
+/// The corner whose faces go through `apex`, a point of the edge that they would have without the rounding.
+RigidCorner rounded_corner(const std::array<double, 3>& apex, const std::array<std::array<double, 3>, 2>& normals,
+                           double radius);
 
 struct RigidContact {
   double gap;                   // signed distance of x, positive outside the rigid body

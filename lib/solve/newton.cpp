@@ -332,6 +332,20 @@ bool Newton::solve_linear(Vec load, Vec result) {
   return reason > 0;
 }
 
+/// PETSc (3.18) takes a factorization that failed for one that MUMPS has analysed in vain, and makes no other until the
+/// pattern changes; the solve after that has no factors and is an error. So it starts anew.
+void Newton::forget_failed_factorization() {
+  KSP solver = nullptr;
+  PC preconditioner = nullptr;
+  PCFailedReason reason = PC_NOERROR;
+  AMT_PETSC(SNESGetKSP(snes_, &solver));
+  AMT_PETSC(KSPGetPC(solver, &preconditioner));
+  AMT_PETSC(PCGetFailedReason(preconditioner, &reason));
+  int failed = reason != PC_NOERROR;
+  MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, problem_.comm());
+  if (failed) AMT_PETSC(PCReset(preconditioner));
+}
+
 /// Where the supports move a body that must not be strained by their motion alone; see Problem::begin_prediction.
 void Newton::predict(Vec unknowns) {
   VecHandle load = problem_.layout().new_vector(), step = problem_.layout().new_vector();
@@ -339,6 +353,7 @@ void Newton::predict(Vec unknowns) {
     if (kept_factorization_) kept_factorization_->tangent_changed();
     ++factorizations_;
     if (!solve_linear(load, step)) AMT_PETSC(VecSet(step, 0.0)); // the solve from there will tell what is wrong
+    forget_failed_factorization();
   }
   problem_.end_prediction(unknowns, step);
 }
@@ -373,6 +388,7 @@ SolveOutcome Newton::solve(Vec unknowns) {
   kept_ = nullptr;
   if (kept_factorization_) kept_factorization_->begin();
   const Phase phase("linear solver"); // the phases of forms inside stop this clock
+  forget_failed_factorization();
   if (problem_.wants_prediction()) predict(unknowns);
   const PetscErrorCode code = SNESSolve(snes_, nullptr, unknowns);
   if (kept_) std::rethrow_exception(kept_);

@@ -104,6 +104,7 @@ class Newton {
   void observe(double norm);
   void predict(Vec unknowns);
   bool solve_linear(Vec load, Vec result);
+  void forget_failed_factorization();
 
   Problem& problem_;
   std::function<bool()> interrupted_;

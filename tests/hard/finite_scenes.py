@@ -2,7 +2,7 @@
 not on how it got there, so that coming back to a place must bring back the forces felt there before."""
 import numpy as np
 from meshes import Mesh
-from scenes import E, NU, deck, hold, pair, scene
+from scenes import E, NU, deck, hold, pair, plane, scene
 
 FRICTIONAL = ("semismooth", "uzawa", "penalty")
 SLAVE_NORMAL = {"slave_normal": {}}
@@ -101,5 +101,72 @@ def lost_and_found(seed, mu=None):
         if mu is None:
             yield "force at t = 0.1 and 3.9", np.linalg.norm(forces(run, 3.9) - forces(run, 0.1)) / np.linalg.norm(forces(run, 0.1)), 1e-6
         yield "the block is pressed", float(forces(run, 2)[1] >= 0), 0.5
+
+    return mesh, whole, check
+
+
+# --- states at the start, and rubber
+
+
+def raise_block(mesh, height):
+    of_block = [nodes for _, nodes, group in mesh.elements if mesh.groups[group - 1][1] == "block"]
+    mesh.nodes[np.unique(of_block), 1] += height
+
+
+@scene("penetrates at the start, is lifted off and pressed in again", FRICTIONAL, name="starts_inside")
+def starts_inside(seed):
+    mesh, whole = slider(seed, 0, "0.06*(1-abs(t-2))*(t>1)", to=3, increments=15)
+    raise_block(mesh, -0.02)
+
+    def check(run):
+        yield from felt_again(run, 1, 3)
+        yield "area while lifted", float(np.interp(2.0, run.history["time"], run.history["contact_pair_area"])), 1e-12
+
+    return mesh, whole, check
+
+
+@scene("a block at a distance, pushed by a force and held by nothing else", FRICTIONAL, name="starts_far_away")
+def starts_far_away(seed):
+    mesh, whole = slider(seed, 0, 0, to=1, increments=5)
+    raise_block(mesh, 0.1)
+    whole["boundary"][1] = {"on": "block_top", "displacement": {"x": 0}, "resultant": {"y": "-0.5*t"}}
+
+    def check(run):
+        yield "force up against that which pushes", abs(run.history["contact_pair_force_y"][-1] / 0.5 - 1), 1e-6
+
+    return mesh, whole, check
+
+
+RUBBER = {"neo_hookean": {"E": 10.0, "nu": 0.4999}}
+
+
+@scene("rubber of nu = 0.4999 pressed to half its height", FRICTIONAL, name="rubber_at_half")
+@scene("rubber of nu = 0.4999 pressed to half its height with friction", FRICTIONAL, name="rubber_at_half_friction", mu=0.2)
+def rubber_at_half(seed, mu=None):
+    """Half of a block 2 wide and 1 high under a rigid plate. Without friction it stays a rectangle; for an incompressible
+    block in plane strain sigma_yy = G (s^2 - 1 / s^2) at the stretch s, on the width 1 / s."""
+    mesh = Mesh(seed)
+    mesh.box("block", (0, 0), (1, 1), (4, 4))
+    boundary = [hold("block_bottom", y=0), hold("block_left", x=0)]
+    plate = plane((0, 1), (0, -1), y="-0.5*t")
+    pairs = [pair("block_top", plate, mu=mu, segment=False)]
+    if mu is not None:  # the side rolls over onto the plate
+        pairs.append(pair("block_right", plate, name="side", mu=mu, segment=False))
+    for contact in pairs:
+        contact["search_distance"] = 2.0
+    whole = deck({"block": (E, NU)}, boundary, pairs, ((1, 10 if mu is None else 40),))
+    # A large part of a body of 16 cells is near its corner, which folds over.
+    whole["certificate"] = {"penetration": 0.1, "complementarity": 0.05, "slip": 0.3}
+    whole["materials"]["block"] = RUBBER
+    whole["kinematics"] = "finite"
+    smooth = RUBBER["neo_hookean"]["E"] / (2 * 1.4999) * (1 / 0.25 - 0.25) / 0.5
+
+    def check(run):
+        force = run.history["reaction_block_bottom_y"][-1]
+        if mu is None:
+            yield "force against that of incompressible rubber", abs(force / smooth - 1), 2e-3
+        else:  # faces held back bulge, which takes more; the slab method's pressure is above that of a free face
+            yield "force below that without friction", max(0.0, 1 - force / smooth), 0.0
+            yield "force above the slab method's", max(0.0, force / (smooth * (1 + mu * 2.0 / 0.5 / 2)) - 1), 0.0
 
     return mesh, whole, check

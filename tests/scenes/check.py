@@ -12,6 +12,7 @@ import adapt_cases
 import block_cases
 import condensed_cases
 import finite_contact_cases
+import forming_cases
 import friction_cases
 import hertz_cases
 import obstacle_cases
@@ -34,6 +35,7 @@ CASES = {
     **obstacle_cases.CASES,
     **adapt_cases.CASES,
     **finite_contact_cases.CASES,
+    **forming_cases.CASES,
     **solver_cases.CASES,
     **self_contact_cases.CASES,
 }

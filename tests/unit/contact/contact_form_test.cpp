@@ -243,4 +243,11 @@ TEST_CASE("bodies held by nothing else get a first guess where they are nearest"
   CHECK(form.totals(state).area == doctest::Approx(1.0));
   state.first_guess = false;
   CHECK(form.totals(state).area == 0.0);
+  // In equilibrium far from its place without this pair, the body is held by another one.
+  form.commit(state);
+  state.first_guess = true;
+  CHECK(form.totals(state).area == doctest::Approx(1.0));
+  std::fill(displacement.begin(), displacement.end(), 0.5);
+  form.commit(state);
+  CHECK(form.totals(state).area == 0.0);
 }

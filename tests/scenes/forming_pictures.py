@@ -1,0 +1,114 @@
+#!/usr/bin/python3
+"""Draws the pictures of the forming scenes into inputs/: forming_pictures.py --program PATH [SCENE ...]. Runs what it draws."""
+import argparse
+import tempfile
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+import forming_cases as cases
+from harness import TOP, Bench
+from solid_pictures import REFERENCE, SIMULATION, draw_deformed
+
+
+def upsetting(bench):
+    smooth = bench.run("upsetting", {"contact": [cases.SMOOTH], "mesh.parameters": {"n": 4, "m": 6}, "steps.0.increments": 20})
+    rough = bench.run("upsetting")
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
+    mirrors = ((1, 1), (-1, 1), (1, -1), (-1, -1))
+    draw_deformed(left, rough, rough.nodal["accumulated_plastic_strain"].ravel(), "plastic strain", mirrors)
+    left.set_title("rough plates, half of the height")
+    law = cases.billet_law(rough)
+    reduction = np.linspace(0.02, 0.5, 60)
+    force, radius, _ = cases.uniform_billet(reduction, law)
+    height = 2.0 * cases.HALF_HEIGHT * (1.0 - reduction)
+    right.plot(reduction, force, **REFERENCE, label="smooth: closed form")
+    right.plot(reduction, force * (1.0 + 0.2 * radius / height), **REFERENCE, ls="--", label="rough: slab method")
+    right.plot(reduction, force * (1.0 + 2.0 * radius / (3.0 * np.sqrt(3.0) * height)), **REFERENCE, ls=":", label="sticking: upper bound")
+    right.plot(0.5 * smooth.history["time"], smooth.history["reaction_middle_y"], **{**SIMULATION, "label": "smooth"})
+    rough_style = {**SIMULATION, "marker": "", "ls": "-", "label": "rough"}
+    right.plot(0.5 * rough.history["time"], rough.history["reaction_middle_y"], **rough_style)
+    right.set_xlabel("reduction of the height")
+    right.set_ylabel("force, kN")
+    right.set_ylim(0.0)
+    right.legend(fontsize=8)
+    return figure
+
+
+def rolling_wheel(bench):
+    # After 5/8 of the turn, so that the wheel is seen away from where it started.
+    part = bench.run("rolling_wheel", {"steps.1.to": 1.625, "steps.1.increments": 80})
+    whole = bench.run("rolling_wheel", {"steps.1.increments": 256})
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
+    draw_deformed(left, part, part.nodal["von_mises"].ravel(), "von Mises stress")
+    left.axhline(0.0, color="k", lw=1)
+    left.set_xlim(-1.0, 5.5)
+    left.set_title("after 5/8 of a turn")
+    rolling = whole.history["time"] >= 1.0
+    turn = whole.history["time"][rolling] - 1.0
+    work, stored, dissipated = (whole.history[f"energy_{name}"][rolling] for name in ("external_work", "stored", "dissipated"))
+    right.plot(turn, work - work[0] - (stored - stored[0]), **REFERENCE, label="work put in, less what is stored")
+    right.plot(turn, dissipated - dissipated[0], color=SIMULATION["color"], label="work of friction")
+    right.set_xlabel("turns")
+    right.set_ylabel("work")
+    other = right.twinx()
+    other.plot(turn, (whole.history["contact_road_force_x"] / whole.history["contact_road_force_y"])[rolling], color="0.5", lw=1)
+    other.set_ylabel("force along / force up (grey)", color="0.4")
+    other.set_ylim(0.0, 0.3)
+    right.legend(loc="upper left", fontsize=8)
+    return figure
+
+
+def deep_drawing(bench):
+    results = bench.run("deep_drawing")
+    figure, axes = plt.subplots(2, 2, figsize=(9, 6.6), layout="constrained")
+    for panel, way in zip(axes[0], (15.0, 30.0)):
+        state = results.at(way)
+        draw_deformed(panel, state, state.nodal["accumulated_plastic_strain"].ravel(), "plastic strain", ((1, 1), (-1, 1)))
+        angle = np.linspace(0.0, 0.5 * np.pi, 30)
+        for mirror in (1, -1):
+            die = np.concatenate([[[41, 0]], np.c_[26.4 - 5 * np.sin(angle), -5 + 5 * np.cos(angle)], [[21.4, -30]]])
+            punch = np.concatenate([[[0, 1 - way]], np.c_[15 + 5 * np.sin(angle), 6 - way - 5 * np.cos(angle)], [[20, 8]]])
+            for tool in (die, punch):
+                panel.plot(mirror * tool[:, 0], tool[:, 1], "k", lw=0.8)
+        panel.set_title(f"way of the punch {way:g} mm")
+    left, right = axes[1]
+    time = results.history["time"]
+    left.plot(time, -results.history["contact_punch_force_y"], color=SIMULATION["color"], label="punch")
+    for way in (10.0, 15.0):
+        bounds = cases.drawing_bounds(results, cases.rim_radius(results.at(way)))
+        left.plot([way, way], bounds, "_-", ms=12, **REFERENCE, label="bounds of slab theory" if way == 10.0 else None)
+    left.set_xlabel("way of the punch, mm")
+    left.set_ylabel("force, kN")
+    left.set_ylim(0.0)
+    left.legend(fontsize=8)
+    for way, shade in zip((10.0, 20.0, 30.0), ("0.7", "0.4", SIMULATION["color"])):
+        right.plot(*cases.thickness(results.at(way)), color=shade, label=f"{way:g} mm")
+        rim = cases.rim_radius(results.at(way))
+        right.plot(cases.BLANK, np.sqrt(cases.BLANK / rim), "s", color=REFERENCE["color"], label="rim: √(R0 / R)" if way == 10.0 else None)
+    right.set_xlabel("radius on the blank, mm")
+    right.set_ylabel("thickness, mm")
+    right.legend(fontsize=8)
+    return figure
+
+
+SCENES = {function.__name__: function for function in (upsetting, rolling_wheel, deep_drawing)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("scenes", nargs="*", choices=[[], *SCENES])
+    parser.add_argument("--program", required=True)
+    options = parser.parse_args()
+    for scene in options.scenes or SCENES:
+        with tempfile.TemporaryDirectory() as folder:
+            bench = Bench(options.program, ["mpirun", "--oversubscribe", "--bind-to", "none"], 1, folder)
+            figure = SCENES[scene](bench)
+            figure.savefig(TOP / "inputs" / scene / f"{scene}.png", dpi=100)
+
+
+if __name__ == "__main__":
+    main()
