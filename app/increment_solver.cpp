@@ -214,4 +214,12 @@ void IncrementSolver::revisit(const SolvedState& state) {
   if (condensed_) condensed_->recover(unknowns_);
 }
 
+void IncrementSolver::end() {
+  ladder_.reset();
+  uzawa_.reset();
+  newton_.reset();
+  condensed_.reset();
+  bounded_.reset();
+}
+
 } // namespace amontons

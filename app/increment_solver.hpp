@@ -68,6 +68,10 @@ class IncrementSolver {
   /// Puts a state in place that was solved from the last accepted one, ready to be accepted. Collective.
   void revisit(const SolvedState& state);
 
+  /// No increment follows: gives back the memory of matrices, factors and multigrid. What was accepted stays;
+  /// remedy_uses() does not. Collective.
+  void end();
+
  private:
   void start(double target);
   SolveOutcome solve_plainly();

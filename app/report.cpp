@@ -160,18 +160,21 @@ void write_fields(Scene& scene, FieldsWriter& writer, Vec unknowns, const std::v
 nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
-  nlohmann::ordered_json phases;
+  nlohmann::ordered_json phases, growth;
   double timed = 0.0;
   // Ranks go through the same phases; one that a rank never entered counts as zero there.
   for (const char* phase :
        {"mesh", "set up", "search", "pattern", "bulk", "loads", "support", "stabilization", "contact", "matrix",
         "factorization", "linear solver", "certificate", "output", "error estimate"}) {
-    const auto& seconds = PhaseTimer::of_run().seconds();
-    const auto found = seconds.find(phase);
-    double sum = found == seconds.end() ? 0.0 : found->second;
-    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, comm);
-    if (sum > 0.0) phases[phase] = sum / ranks;
-    timed += sum / ranks;
+    const auto of_phase = [phase](const std::map<std::string, double>& figures) {
+      const auto found = figures.find(phase);
+      return found == figures.end() ? 0.0 : found->second;
+    };
+    double sums[2] = {of_phase(PhaseTimer::of_run().seconds()), of_phase(PhaseTimer::of_run().memory_growth())};
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm);
+    if (sums[0] > 0.0) phases[phase] = sums[0] / ranks;
+    if (sums[1] > 0.0) growth[phase] = sums[1];
+    timed += sums[0] / ranks;
   }
   phases["rest"] = std::max(0.0, wall_seconds - timed);
   double sums[2] = {cpu_seconds(), peak_memory()};
@@ -179,6 +182,7 @@ nlohmann::ordered_json resources(MPI_Comm comm, double wall_seconds) {
   return {{"wall_seconds", wall_seconds},
           {"cpu_seconds", sums[0]},
           {"peak_memory_bytes", sums[1]},
+          {"memory_growth_bytes", growth},
           {"phase_seconds", phases}};
 }
 

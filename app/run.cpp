@@ -442,6 +442,7 @@ int Run::march() {
 /// Adds errors and effects to the summary, and what they amount to to the log.
 void Run::judge_accuracy(nlohmann::ordered_json& summary) {
   if (!last_samples_) return;
+  solver_->end(); // before estimates, which need memory of their own
   const auto mesh_error = estimate_mesh_error(*scene_, solver_->accepted(), *last_samples_);
   const auto figures = estimate_figure_errors(*scene_, *solver_, *last_samples_);
   summary["errors"] = error_budget({.scene = *scene_,

@@ -18,8 +18,13 @@ PhaseTimer& PhaseTimer::of_run() {
 
 void PhaseTimer::switch_clock() {
   const double time = now();
-  if (!open_.empty()) seconds_[open_.back()] += time - since_;
+  const double peak = peak_memory();
+  if (!open_.empty()) {
+    seconds_[open_.back()] += time - since_;
+    if (peak > peak_) growth_[open_.back()] += peak - peak_;
+  }
   since_ = time;
+  peak_ = peak;
 }
 
 PhaseTimer::Scope::Scope(PhaseTimer& timer, const char* phase) : timer_(timer) {

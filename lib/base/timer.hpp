@@ -1,4 +1,5 @@
-// Where the time of a run goes: wall-clock seconds per named phase, nested phases counted once (a phase's own time).
+// Where the time and the memory of a run go: wall-clock seconds per named phase, nested phases counted once (a phase's
+// own time), and by how much the peak of memory rose in each.
 #pragma once
 
 #include <map>
@@ -23,13 +24,16 @@ class PhaseTimer {
   };
 
   const std::map<std::string, double>& seconds() const { return seconds_; }
+  /// Bytes by which the largest resident memory of this process rose while the phase was on; their sum is the peak but
+  /// for what was there before the first phase. A phase that uses again what another has freed counts as nothing.
+  const std::map<std::string, double>& memory_growth() const { return growth_; }
   static PhaseTimer& of_run();
 
  private:
   void switch_clock();
-  std::map<std::string, double> seconds_;
+  std::map<std::string, double> seconds_, growth_;
   std::vector<std::string> open_;
-  double since_ = 0.0;
+  double since_ = 0.0, peak_ = 0.0;
 };
 
 /// Times the enclosing scope as `phase` of the run.

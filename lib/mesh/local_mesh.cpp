@@ -168,7 +168,6 @@ Mesh Filler::filled() {
   name_groups();
   number_nodes();
   fill_cells();
-  mesh_.dm = std::move(plex_.dm);
   return std::move(mesh_);
 }
 

@@ -1,6 +1,6 @@
 // The distributed mesh as the rest of the program sees it: plain arrays of this rank's nodes, cells and named groups.
-// Built from a DMPlex (which owns topology, partition and refinement) by the functions of mesh/build.hpp. It knows
-// nothing of unknowns, bodies' materials or contact.
+// Built by the functions of mesh/build.hpp from a DMPlex (topology, partition and refinement), which is gone
+// afterwards. It knows nothing of unknowns, bodies' materials or contact.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -45,7 +45,6 @@ struct Mesh {
   MPI_Comm comm = MPI_COMM_NULL;
   int dim = 0;   // 2 or 3
   int order = 1; // 1 or 2: of the cells, of their geometry and of the displacement field alike
-  DmHandle dm;
 
   std::int32_t num_owned = 0;
   std::int64_t first_global = 0; // global number of local node 0

@@ -138,7 +138,7 @@ PlexMesh plex_of(MPI_Comm comm, const RawMesh& raw, MeshFacts& facts);
 /// The mesh with every cell divided into 2^dim. Collective.
 PlexMesh refined(const PlexMesh& coarse, int order);
 
-/// This rank's arrays; takes over the DM. Collective.
+/// This rank's arrays; the DM ends here. Collective.
 Mesh local_mesh(MPI_Comm comm, PlexMesh&& plex, const MeshFacts& facts);
 
 } // namespace amontons

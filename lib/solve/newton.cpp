@@ -172,12 +172,17 @@ void end_outside_domain(SNES snes, bool exists, Vec residual) {
   AMT_PETSC(SNESSetFunctionDomainError(snes));
 }
 
-SNESConvergedReason judge_residual(SNES snes, const Problem& problem, PetscInt iteration, double norm) {
+double small_residual(SNES snes, const Problem& problem) {
   PetscReal rtol = 0.0;
+  AMT_PETSC(SNESGetTolerances(snes, nullptr, &rtol, nullptr, nullptr, nullptr));
+  return std::max(rtol * problem.force_scale(), problem.rounding());
+}
+
+SNESConvergedReason judge_residual(SNES snes, const Problem& problem, PetscInt iteration, double norm) {
   PetscInt max_iterations = 0;
-  AMT_PETSC(SNESGetTolerances(snes, nullptr, &rtol, nullptr, &max_iterations, nullptr));
+  AMT_PETSC(SNESGetTolerances(snes, nullptr, nullptr, nullptr, &max_iterations, nullptr));
   if (!std::isfinite(norm)) return SNES_DIVERGED_FNORM_NAN;
-  if (norm <= std::max(rtol * problem.force_scale(), problem.rounding())) return SNES_CONVERGED_FNORM_RELATIVE;
+  if (norm <= small_residual(snes, problem)) return SNES_CONVERGED_FNORM_RELATIVE;
   return iteration >= max_iterations ? SNES_DIVERGED_MAX_IT : SNES_CONVERGED_ITERATING;
 }
 
@@ -274,7 +279,7 @@ PetscErrorCode Newton::evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, voi
     ask_for_decrease(newton.snes_, is_guess ? accept_anything : newton.sufficient_decrease_);
     if (!newton.problem_.tangent(unknowns, matrix)) return;
     if (newton.kept_factorization_) newton.kept_factorization_->tangent_changed();
-    if (newton.lag_) newton.lag_->decide(newton.snes_);
+    if (newton.lag_) newton.lag_->decide(newton.snes_, newton.last_norm_);
     if (!newton.lag_ || newton.lag_->rebuilds()) ++newton.factorizations_;
   });
 }
@@ -285,13 +290,32 @@ PetscErrorCode Newton::test_convergence(SNES snes, PetscInt iteration, PetscReal
   return guarded(newton.kept_, [&] {
     *reason = judge_residual(snes, newton.problem_, iteration, norm);
     newton.observe(norm);
+    if (iteration == 0) newton.first_norm_ = norm;
+    if (*reason == SNES_CONVERGED_ITERATING && norm <= newton.reduction_ * newton.first_norm_)
+      *reason = SNES_CONVERGED_FNORM_RELATIVE;
     if (newton.interrupted_ && newton.interrupted_())
       *reason = SNES_BREAKOUT_INNER_ITER;
     else if (*reason == SNES_CONVERGED_ITERATING && (newton.record_.cycle() > 0 || newton.record_.rests()))
       *reason = SNES_DIVERGED_LOCAL_MIN;
     else if (*reason > 0 && iteration < newton.least_iterations_ && norm > 1e-15 * newton.problem_.force_scale())
       *reason = SNES_CONVERGED_ITERATING;
+    if (*reason == SNES_CONVERGED_ITERATING) newton.limit_linear_solve(norm);
   });
+}
+
+/// Where convergence is quadratic, Eisenstat and Walker's rule asks the last linear solve for more than Newton's method
+/// can use. (A method that looks at preconditioned residuals cannot be told so.)
+void Newton::limit_linear_solve(double norm) {
+  constexpr double margin = 0.3; // what the tangent does not foresee needs room, too
+  const double goal = std::max(small_residual(snes_, problem_), reduction_ * first_norm_);
+  KSP ksp = nullptr;
+  KSPNormType kind = KSP_NORM_DEFAULT;
+  last_norm_ = norm;
+  AMT_PETSC(SNESGetKSP(snes_, &ksp));
+  AMT_PETSC(KSPGetNormType(ksp, &kind));
+  if (kind != KSP_NORM_UNPRECONDITIONED) return;
+  // A solve that must iterate though its residual is small already still has something to do.
+  AMT_PETSC(KSPSetTolerances(ksp, PETSC_DEFAULT, margin * std::min(goal, 0.1 * norm), PETSC_DEFAULT, PETSC_DEFAULT));
 }
 
 void Newton::observe(double norm) {

@@ -51,6 +51,8 @@ void end_outside_domain(SNES snes, bool exists, Vec residual);
 /// Whether to go on at a residual of this norm: converged when it is small (snes_rtol) against the forces that are
 /// balanced, which, unlike the first residual of an increment, do not become small when the guess is good.
 SNESConvergedReason judge_residual(SNES snes, const Problem& problem, PetscInt iteration, double norm);
+/// The norm that judge_residual() takes for small.
+double small_residual(SNES snes, const Problem& problem);
 
 /// Backtracking goes back until |F|² has fallen by `alpha` of what the tangent promises. A tangent that is no
 /// derivative promises nothing: with `accept_anything` its full step passes. Nothing happens with other line searches.
@@ -78,6 +80,9 @@ class Newton {
   /// Iterate at least this often unless the residual is rounding: for a loop around that wants more accuracy than the
   /// tolerance and pays only a back-substitution for it.
   void require_iterations(int least) { least_iterations_ = least; }
+  /// Of the next solves: one ends, too, when it has made the residual so many times smaller than it was at its start.
+  /// For a loop around whose next change will disturb the equilibrium by more than that. 0: to the tolerance.
+  void set_reduction(double reduction) { reduction_ = reduction; }
 
   /// From the state in `unknowns` (prescribed values already in place) to equilibrium. Collective.
   SolveOutcome solve(Vec unknowns);
@@ -102,6 +107,7 @@ class Newton {
                                          SNESConvergedReason* reason, void* self);
   static PetscErrorCode search_energy(SNESLineSearch search, void* self);
   void observe(double norm);
+  void limit_linear_solve(double norm);
   void predict(Vec unknowns);
   bool solve_linear(Vec load, Vec result);
   void forget_failed_factorization();
@@ -119,7 +125,9 @@ class Newton {
   std::optional<PreconditionerLag> lag_; // absent for factorizations
   std::exception_ptr kept_;
   int factorizations_ = 0, least_iterations_ = 0;
-  PetscReal sufficient_decrease_ = 0.0; // of a backtracking line search
+  double reduction_ = 0.0, first_norm_ = 0.0; // norm of the residual at the start of the running solve
+  double last_norm_ = 0.0;                    // and where the last linear solve started from
+  PetscReal sufficient_decrease_ = 0.0;       // of a backtracking line search
 };
 
 } // namespace amontons

@@ -9,6 +9,17 @@ namespace {
 /// A set-up of multigrid costs about as much as 20 iterations; one that takes twice as long as it did is replaced.
 constexpr double tolerated_slowdown = 2.5;
 
+/// Powers of ten by which the last solve has made the residual smaller.
+double digits_gained(KSP ksp, double norm) {
+  KSPNormType kind = KSP_NORM_DEFAULT;
+  PetscReal rtol = 0.0, left = 0.0;
+  AMT_PETSC(KSPGetNormType(ksp, &kind));
+  AMT_PETSC(KSPGetTolerances(ksp, &rtol, nullptr, nullptr, nullptr));
+  AMT_PETSC(KSPGetResidualNorm(ksp, &left));
+  // Of preconditioned residuals only the tolerance is known, as Eisenstat and Walker's rule had set it.
+  return kind == KSP_NORM_UNPRECONDITIONED && left > 0.0 ? std::log10(norm / left) : -std::log10(rtol);
+}
+
 } // namespace
 
 bool PreconditionerLag::applies_to(SNES snes) {
@@ -22,17 +33,14 @@ bool PreconditionerLag::applies_to(SNES snes) {
   return !is_preonly && !is_factorization;
 }
 
-void PreconditionerLag::decide(SNES snes) {
+void PreconditionerLag::decide(SNES snes, double norm) {
   KSP ksp = nullptr;
   PetscInt iterations = 0;
-  PetscReal rtol = 0.0;
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   AMT_PETSC(SNESGetKSP(snes, &ksp));
   AMT_PETSC(KSPGetIterationNumber(ksp, &iterations));
-  AMT_PETSC(KSPGetTolerances(ksp, &rtol, nullptr, nullptr, nullptr));
   AMT_PETSC(KSPGetConvergedReason(ksp, &reason));
-  // The tolerance of the solve before this one, as Eisenstat and Walker's rule had set it.
-  const double rate = iterations / std::max(0.5, -std::log10(rtol));
+  const double rate = iterations / std::max(0.5, digits_gained(ksp, norm));
   const bool is_bad = reason < 0 || (first_rate_ > 0.0 && rate > tolerated_slowdown * first_rate_);
   rebuilds_ = !is_set_up_ || is_bad;
   if (rebuilds_)

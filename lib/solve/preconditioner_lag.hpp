@@ -13,8 +13,8 @@ class PreconditionerLag {
   /// Does this SNES use a Krylov method with a preconditioner that is not a factorization?
   static bool applies_to(SNES snes);
   /// To be called when the matrix holds a new tangent, before it is solved with: tells the SNES whether to keep its
-  /// preconditioner. Collective.
-  void decide(SNES snes);
+  /// preconditioner. `norm`: of the right side that the solve before this one began with. Collective.
+  void decide(SNES snes, double norm);
   /// What decide() has decided.
   bool rebuilds() const { return rebuilds_; }
 

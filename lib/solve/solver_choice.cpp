@@ -12,7 +12,7 @@ namespace {
 constexpr PetscInt kept_from_2d = 400'000;
 constexpr PetscInt kept_from_3d = 20'000;
 /// Unknowns above which displacement-only problems in 3D go to a Krylov method with multigrid.
-constexpr PetscInt krylov_from_3d = 150'000;
+constexpr PetscInt krylov_from_3d = 50'000;
 /// Unknowns above which memory counts more than the time of multigrid's set-up.
 constexpr PetscInt lean_products_from = 1'000'000;
 
@@ -43,8 +43,8 @@ std::string choose_newton_solver(const Problem& problem) {
   }
   if (is_free && option("-ksp_type") != KSPPREONLY) { // a solve goes as far as Newton's method can use
     default_option("-snes_ksp_ew", "true");
-    default_option("-snes_ksp_ew_rtol0", "1e-3");
-    default_option("-snes_ksp_ew_rtolmax", "1e-3");
+    default_option("-snes_ksp_ew_rtol0", "1e-2");
+    default_option("-snes_ksp_ew_rtolmax", "1e-2");
     if (option("-ksp_type") == KSPGMRES) {
       default_option("-ksp_gmres_restart", "40");
       default_option("-ksp_pc_side", "right");

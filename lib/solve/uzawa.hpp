@@ -1,5 +1,6 @@
 // The augmented-Lagrangian outer loop: equilibrium at fixed multipliers by Newton, then new multipliers, accelerated by
-// Anderson mixing (PETSc's SNESANDERSON on the multipliers; tuned by -uzawa_snes_*).
+// Anderson mixing (PETSc's SNESANDERSON on the multipliers; tuned by -uzawa_snes_*). Equilibria on the way are found as
+// well as the next update can use; the one at the end, with the final multipliers, to the tolerance of Newton's method.
 #pragma once
 
 #include "form/multiplier_set.hpp"
@@ -19,6 +20,8 @@ class UzawaLoop {
   static PetscErrorCode evaluate(SNES, Vec multipliers, Vec change, void* self);
   static PetscErrorCode test_convergence(SNES snes, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                          SNESConvergedReason* reason, void* self);
+  /// At the multipliers held now; adds to `inner_`.
+  void find_equilibrium();
 
   Problem& problem_;
   Newton& newton_;

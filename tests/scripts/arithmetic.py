@@ -16,6 +16,7 @@ TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "scripts"))
 import deck_edit  # noqa: E402
 import expressions  # noqa: E402
+import performance_model  # noqa: E402
 import plan_models  # noqa: E402
 import study_analysis  # noqa: E402
 import study_file  # noqa: E402
@@ -64,6 +65,57 @@ class Powers(unittest.TestCase):
         self.assertIsNone(study_analysis.fit_power([1, 2], [1, 2]))
         self.assertIsNone(study_analysis.fit_power([1, 1, 1], [1, 2, 3]))
         self.assertIsNone(study_analysis.fit_power([1, 2, 3], [1.0, 0.0, None]))
+
+
+class PerformanceModel(unittest.TestCase):
+    RATES = {"start": 2e-5, "bulk": 4e-7, "search and contact": 3e-6, "certificate and output": 5e-7,
+             "set-ups": 3e-5, "iterations": 4e-7}
+
+    def summary(self, unknowns, newton, linear, set_ups, busy=1.0):
+        """What a run with these rates leaves behind; all phases take `busy` times their CPU time."""
+        counts = performance_model.Counts(newton, linear, set_ups, 4)
+        work = performance_model.parts_of(unknowns, counts)
+        cpu = {name: rate * work[name][0] for name, rate in self.RATES.items()}
+        phases = {"mesh": cpu["start"], "bulk": cpu["bulk"], "contact": cpu["search and contact"],
+                  "certificate": cpu["certificate and output"], "linear solver": cpu["set-ups"] + cpu["iterations"]}
+        return {"scene": {"unknowns": {"displacement": unknowns, "multipliers": 0}}, "newton_iterations": newton,
+                "linear_iterations": linear, "factorizations": set_ups, "increments": 4,
+                "resources": {"cpu_seconds": sum(cpu.values()),
+                              "phase_seconds": {name: busy * value for name, value in phases.items()}}}
+
+    def test_rates_are_found_again(self):
+        fit = performance_model.fit([self.summary(1e5, 40, 150, 1), self.summary(7e5, 50, 260, 2, busy=3.0)])
+        for name, rate in self.RATES.items():
+            self.assertAlmostEqual(fit.seconds[name] / rate, 1.0, 9, name)
+        for misfit in fit.misfits:
+            self.assertAlmostEqual(misfit, 1.0, 9)
+
+    def test_one_run_is_not_enough(self):
+        with self.assertRaises(ValueError):
+            performance_model.fit([self.summary(1e5, 40, 150, 1)])
+
+    def test_a_network_without_cost_loses_only_on_the_interface(self):
+        free = performance_model.Network(latency=0.0, bandwidth=math.inf, hop=0.0)
+        fit = performance_model.Fit(self.RATES)
+        counts = performance_model.Counts(12, 60, 0.1, 1)
+        one, many = (performance_model.wall_seconds(fit, 1e7, ranks, counts, free) for ranks in (1, 512))
+        for name in one:
+            expected = 1.0 if one[name] == 0.0 else 64.0 if name == "search and contact" else 512.0
+            self.assertAlmostEqual(one[name] / (many[name] or 1.0) if one[name] else 1.0, expected, 6, name)
+
+    def test_costs_of_messages(self):
+        counts = performance_model.Counts(12, 60, 0.1, 1)
+        self.assertEqual(sum(performance_model.communication(1e7, 1, counts).values()), 0.0)
+        slow = performance_model.Network(latency=1.0, bandwidth=math.inf, hop=0.0)
+        fast = performance_model.Network(latency=0.0, bandwidth=1.0, hop=0.0)
+        grid = performance_model.Multigrid(coarsening=1e9)
+        # One level: latency of 26 messages whatever the size; a surface of (N / P)^(2/3) values.
+        for network, ratio in ((slow, 1.0), (fast, 8 ** (2 / 3))):
+            big, small = (performance_model.communication(n, 64, counts, network, grid)["halo"] for n in (8e6, 1e6))
+            self.assertAlmostEqual(big / small, ratio, 9)
+        hops = performance_model.Network(latency=0.0, bandwidth=math.inf, hop=1.0)
+        few, many = (performance_model.communication(1e6, ranks, counts, hops)["reductions"] for ranks in (4, 64))
+        self.assertAlmostEqual(many / few, 3.0, 9)
 
 
 class Extrapolation(unittest.TestCase):
