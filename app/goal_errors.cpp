@@ -141,17 +141,9 @@ VecHandle solid_forces(Scene& scene, Vec unknowns) {
   return forces;
 }
 
-/// A figure whose influence is known and whose error is not yet.
-struct Asked {
-  std::string pair;
-  const char* name;
-  double value;                  // w · f_c
-  std::vector<double> influence; // num_local x dim
-};
-
 /// Adds the figure of this lifting; false where the linear solver fails. Collective.
 bool ask(Scene& scene, IncrementSolver& solver, Lifting& lifting, const std::string& pair, const char* name,
-         std::vector<Asked>& asked) {
+         FigureInfluences& found) {
   const Vec lift = lifting.finish();
   VecHandle forces = solid_forces(scene, lift), response = scene.layout->new_vector();
   PetscScalar work = 0.0;
@@ -161,20 +153,19 @@ bool ask(Scene& scene, IncrementSolver& solver, Lifting& lifting, const std::str
   if (!solver.solve_linearized(forces, response)) return false;
   AMT_PETSC(VecAYPX(response, -1.0, lift));
   const auto field = scene.problem->state_at(response).displacement;
-  asked.push_back({pair, name, -work, {field.begin(), field.end()}});
+  found.figures.push_back({pair, name, -work, {field.begin(), field.end()}});
   return true;
 }
 
 } // namespace
 
-FigureErrors estimate_figure_errors(Scene& scene, IncrementSolver& solver, std::span<const ContactSamples> samples) {
-  FigureErrors errors;
-  errors.reason = reason_against(scene);
-  if (!errors.reason.empty()) return errors;
+FigureInfluences influences_on_figures(Scene& scene, IncrementSolver& solver, std::span<const ContactSamples> samples) {
+  FigureInfluences found;
+  found.reason = reason_against(scene);
+  if (!found.reason.empty()) return found;
   const Phase phase("error estimate");
   const double begun = now();
-  std::vector<Asked> asked;
-  for (std::size_t i = 0; i < scene.contacts.size() && errors.reason.empty(); ++i) {
+  for (std::size_t i = 0; i < scene.contacts.size() && found.reason.empty(); ++i) {
     const auto& pair = scene.contacts[i]->pair();
     const auto direction = direction_of_force(scene.mesh.comm, samples[i]);
     const auto weights = peak_weights(scene.mesh, pair, samples[i]);
@@ -182,25 +173,35 @@ FigureErrors estimate_figure_errors(Scene& scene, IncrementSolver& solver, std::
     Lifting everywhere(scene, pair), around(scene, pair);
     everywhere.move_all(direction);
     around.move_by(weights, direction);
-    if (!ask(scene, solver, everywhere, pair.name, "force", asked) ||
-        !ask(scene, solver, around, pair.name, "peak_pressure", asked))
-      errors.reason = "the linear solver failed";
+    if (!ask(scene, solver, everywhere, pair.name, "force", found) ||
+        !ask(scene, solver, around, pair.name, "peak_pressure", found))
+      found.reason = "the linear solver failed";
   }
+  found.seconds = now() - begun;
+  return found;
+}
+
+FigureErrors estimate_figure_errors(Scene& scene, Vec unknowns, FigureInfluences found) {
+  FigureErrors errors{.figures = {}, .reason = std::move(found.reason), .seconds = found.seconds};
+  if (found.figures.empty()) return errors;
+  const Phase phase("error estimate");
+  const double begun = now();
   std::vector<std::vector<double>> influences;
-  for (auto& figure : asked)
+  for (auto& figure : found.figures)
     influences.push_back(std::move(figure.influence));
-  auto goals = estimate_goal_errors(*scene.bulk, scene.mesh, scene.problem->state_at(solver.accepted()), influences);
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    const double size = std::abs(asked[i].value);
-    errors.figures.push_back({.pair = asked[i].pair,
-                              .figure = asked[i].name,
-                              .relative = goals[i].error / asked[i].value,
+  auto goals = estimate_goal_errors(*scene.bulk, scene.mesh, scene.problem->state_at(unknowns), influences);
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const auto& figure = found.figures[i];
+    const double size = std::abs(figure.value);
+    errors.figures.push_back({.pair = figure.pair,
+                              .figure = figure.name,
+                              .relative = goals[i].error / figure.value,
                               .bound = goals[i].bound / size,
                               .cells = std::move(goals[i].cells)});
     for (double& cell : errors.figures.back().cells)
       cell /= size;
   }
-  errors.seconds = now() - begun;
+  errors.seconds += now() - begun;
   return errors;
 }
 

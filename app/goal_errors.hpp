@@ -19,15 +19,30 @@ struct FigureError {
   std::vector<double> cells; // |part| of this rank's cells, over the figure
 };
 
-struct FigureErrors {
-  std::vector<FigureError> figures;
+/// Figures whose influence fields are known.
+struct FigureInfluences {
+  struct Figure {
+    std::string pair, name;
+    double value;                  // in the unit of the influence
+    std::vector<double> influence; // displacement, num_local x dim
+  };
+  std::vector<Figure> figures;
   std::string reason; // why there are none, in words; else empty
   double seconds = 0.0;
 };
 
-/// `samples`: of that state, one a pair. Where the solid is linear elastic, nothing rubs, and a linear system with the
-/// tangent is a matter of a back-substitution; elsewhere it says why not. Collective.
-FigureErrors estimate_figure_errors(Scene& scene, IncrementSolver& solver, std::span<const ContactSamples> samples);
+/// Of the last accepted state; `samples`: of that state, one a pair. Where the solid is linear elastic, nothing rubs,
+/// and a linear system with the tangent is a matter of a back-substitution; elsewhere it says why not. Collective.
+FigureInfluences influences_on_figures(Scene& scene, IncrementSolver& solver, std::span<const ContactSamples> samples);
+
+struct FigureErrors {
+  std::vector<FigureError> figures;
+  std::string reason; // as above
+  double seconds = 0.0;
+};
+
+/// `unknowns`: the state of the influences. Needs no solver. Collective.
+FigureErrors estimate_figure_errors(Scene& scene, Vec unknowns, FigureInfluences influences);
 
 nlohmann::ordered_json to_json(const FigureErrors& errors, double run_seconds);
 

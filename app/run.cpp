@@ -69,7 +69,7 @@ class Run {
   void accept(const Stretch& stretch, const SolveOutcome& outcome, double path_error);
   void write_checkpoint_file(const Stretch& stretch);
   void progress(const std::string& step, const IncrementReport& report, const std::vector<ContactTotals>& totals);
-  void judge_accuracy(nlohmann::ordered_json& summary);
+  void judge_accuracy(int status, nlohmann::ordered_json& summary);
   void close_pass(const DiscretizationError& mesh_error, const FigureErrors& figures, nlohmann::ordered_json& summary);
   int finish(int status, const std::string& reason);
   std::string file(const char* name) const { return directory_ + "/" + name; }
@@ -388,7 +388,7 @@ void Run::accept(const Stretch& stretch, const SolveOutcome& outcome, double pat
   // The state at the very end is estimated in any run.
   if (adaptation_ && ends_step && stretch.step + 1 < scene_->deck.steps.size())
     adaptation_->see(*scene_, estimate_mesh_error(*scene_, unknowns, samples),
-                     estimate_figure_errors(*scene_, *solver_, samples));
+                     estimate_figure_errors(*scene_, unknowns, influences_on_figures(*scene_, *solver_, samples)));
   write_checkpoint_file(stretch);
   largest_residual_ = std::max(largest_residual_, outcome.residual);
   last_samples_ = std::move(samples);
@@ -440,11 +440,14 @@ int Run::march() {
 }
 
 /// Adds errors and effects to the summary, and what they amount to to the log.
-void Run::judge_accuracy(nlohmann::ordered_json& summary) {
+void Run::judge_accuracy(int status, nlohmann::ordered_json& summary) {
   if (!last_samples_) return;
+  const bool at_end = status == status_certified || status == status_not_certified;
+  auto influences = at_end ? influences_on_figures(*scene_, *solver_, *last_samples_)
+                           : FigureInfluences{.figures = {}, .reason = "the run did not come to its end"};
   solver_->end(); // before estimates, which need memory of their own
   const auto mesh_error = estimate_mesh_error(*scene_, solver_->accepted(), *last_samples_);
-  const auto figures = estimate_figure_errors(*scene_, *solver_, *last_samples_);
+  const auto figures = estimate_figure_errors(*scene_, solver_->accepted(), std::move(influences));
   summary["errors"] = error_budget({.scene = *scene_,
                                     .unknowns = solver_->accepted(),
                                     .mesh_error = mesh_error,
@@ -512,7 +515,7 @@ int Run::finish(int status, const std::string& reason) {
   if (census_) summary["other_solutions"] = census_->to_json();
   if (path_) summary["path"] = path_->to_json();
   summary["certificate"] = certificate_.to_json();
-  judge_accuracy(summary);
+  judge_accuracy(status, summary);
   summary["resources"] = resources(comm_, now() - started_);
   write_summary(comm_, file("summary.json"), summary);
   for (const auto& line : certificate_.failures())

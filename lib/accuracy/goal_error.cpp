@@ -49,23 +49,20 @@ double part(const CellParts& state, const CellParts& influence) {
 
 std::vector<GoalError> estimate_goal_errors(SolidForm& solid, const Mesh& mesh, const State& state,
                                             std::span<const std::vector<double>> influences) {
-  // The influence fields first: batches are gone after their visit.
-  const std::size_t cells = accuracy::CellIndex(mesh).size(), figures = influences.size();
-  std::vector<std::vector<CellParts>> parts(figures, std::vector<CellParts>(cells));
-  for (std::size_t i = 0; i < figures; ++i)
-    each_cell(solid, mesh, State{.displacement = influences[i]},
-              [&](std::size_t cell, CellParts influence) { parts[i][cell] = std::move(influence); });
-  std::vector<GoalError> goals(figures);
-  for (auto& goal : goals)
-    goal.cells.resize(cells);
-  each_cell(solid, mesh, state, [&](std::size_t cell, const CellParts& of_state) {
-    for (std::size_t i = 0; i < figures; ++i) {
-      const double value = part(of_state, parts[i][cell]);
-      goals[i].error += value;
-      goals[i].cells[cell] = std::abs(value);
-      goals[i].bound += goals[i].cells[cell];
-    }
-  });
+  // The state's parts are kept, those of the influences pass by: the memory does not grow with the figures.
+  std::vector<CellParts> of_state(accuracy::CellIndex(mesh).size());
+  each_cell(solid, mesh, state, [&](std::size_t cell, CellParts parts) { of_state[cell] = std::move(parts); });
+  std::vector<GoalError> goals;
+  for (const auto& influence : influences) {
+    auto& goal = goals.emplace_back();
+    goal.cells.resize(of_state.size());
+    each_cell(solid, mesh, State{.displacement = influence}, [&](std::size_t cell, const CellParts& parts) {
+      const double value = part(of_state[cell], parts);
+      goal.error += value;
+      goal.cells[cell] = std::abs(value);
+      goal.bound += goal.cells[cell];
+    });
+  }
   for (auto& goal : goals) {
     std::array<double, 2> sums{goal.error, goal.bound};
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, mesh.comm);
