@@ -5,6 +5,7 @@
 #include "base/timer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace amontons {
@@ -73,15 +74,31 @@ DiscretizationError estimate_mesh_error(Scene& scene, Vec unknowns, std::span<co
   return estimate_discretization_error(*scene.bulk, scene.mesh, state, edge);
 }
 
+std::optional<double> unsolved_part(Scene& scene, IncrementSolver& solver) {
+  if (!scene.bulk->tangent_is_constant() || !scene.problem->tangent_is_symmetric()) return {};
+  const Phase phase("error estimate");
+  VecHandle residual = scene.layout->new_vector(), correction = scene.layout->new_vector();
+  if (!scene.problem->residual(solver.accepted(), residual)) return {};
+  if (!solver.solve_linearized(residual, correction)) return {};
+  PetscScalar work = 0.0;
+  AMT_PETSC(VecDot(residual, correction, &work));
+  const double all = scene.internal_work(solver.accepted());
+  if (all <= 0.0) return {};
+  return std::sqrt(std::abs(work) / all);
+}
+
 Json error_budget(const BudgetInput& input) {
-  return {{"discretization", discretization(input)},
-          {"figures", to_json(input.figures, input.wall_seconds)},
-          {"path", path(input)},
-          {"constraint", constraint(input)},
-          {"algebra",
-           {{"relative", input.largest_residual},
-            {"meaning", "largest out-of-balance force that the solver has left in an increment, relative to the forces "
-                        "that are balanced"}}}};
+  return {
+      {"discretization", discretization(input)},
+      {"figures", to_json(input.figures, input.wall_seconds)},
+      {"path", path(input)},
+      {"constraint", constraint(input)},
+      {"algebra",
+       {{"relative", input.largest_residual},
+        {"energy_norm", input.unsolved ? Json(*input.unsolved) : Json()},
+        {"meaning", "relative: largest out-of-balance force that the solver has left in an increment, over the forces "
+                    "that are balanced; energy_norm: distance of the last state from the exact solution of its "
+                    "discrete equations, over that of the solution (null: not for this formulation)"}}}};
 }
 
 std::string budget_sentence(const Json& budget) {

@@ -9,6 +9,7 @@
 #include "scene.hpp"
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,12 @@ namespace amontons {
 /// Collective.
 DiscretizationError estimate_mesh_error(Scene& scene, Vec unknowns, std::span<const ContactSamples> samples);
 
+/// What the tolerances of the solvers have left in the last accepted state: its distance from the exact solution of the
+/// discrete equations in the energy norm, sqrt(r · K⁻¹ r), over that of the solution. One more solve with the tangent;
+/// absent where there is none at hand (see IncrementSolver::solve_linearized), with friction, and where the solid is
+/// not linear elastic. Collective.
+std::optional<double> unsolved_part(Scene& scene, IncrementSolver& solver);
+
 /// The last accepted state, and what the run has gathered on its way there.
 struct BudgetInput {
   Scene& scene;
@@ -26,8 +33,9 @@ struct BudgetInput {
   const DiscretizationError& mesh_error;
   const FigureErrors& figures;
   const CertificateRecord& certificate;
-  const PathRecord* path;  // null: not measured
-  double largest_residual; // of all accepted increments, relative to the force scale
+  const PathRecord* path;         // null: not measured
+  double largest_residual;        // of all accepted increments, relative to the force scale
+  std::optional<double> unsolved; // see unsolved_part
   double wall_seconds;
 };
 

@@ -188,6 +188,7 @@ def accuracy(case):
         case.expect(f"refine {refine}: the certificate's penetration",
                     errors["constraint"]["penetration"] == items["penetration"]["worst"], errors)
         case.expect(f"refine {refine}: small residuals", 0 < errors["algebra"]["relative"] < 1e-6, errors["algebra"])
+        case.expect(f"refine {refine}: next to nothing left unsolved", 0 <= errors["algebra"]["energy_norm"] < 1e-6, errors["algebra"])
         case.expect(f"refine {refine}: the effects off", not summary["effects"]["finite_kinematics"]["on"])
     case.expect("path error where asked for",
                 found[0]["errors"]["path"]["relative"] == found[0]["path"]["estimated_error"])
