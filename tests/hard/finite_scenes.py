@@ -38,9 +38,10 @@ def felt_again(run, first, second, tolerance=1e-6):
 
 
 @scene("slave nodes pass an edge of the master back and forth (the lecture's endless loop)", FRICTIONAL, name="edge_back_and_forth", rise=lambda x: -0.1 * abs(x - 0.8))
+@scene("the same with projections to the closest point", FRICTIONAL, name="edge_closest_point", rise=lambda x: -0.1 * abs(x - 0.8), projection={"closest_point": {}})
 @scene("back and forth over a valley of the master", FRICTIONAL, name="valley_back_and_forth", rise=lambda x: 0.1 * abs(x - 0.8))
-def back_and_forth(seed, rise):
-    mesh, whole = slider(seed, "0.07*sin(pi*(t-1))*(t>1)", "-0.02*min(t,1)", rise=rise, to=5, increments=50)
+def back_and_forth(seed, rise, projection=SLAVE_NORMAL):
+    mesh, whole = slider(seed, "0.07*sin(pi*(t-1))*(t>1)", "-0.02*min(t,1)", rise=rise, to=5, increments=50, projection=projection)
 
     def check(run):
         yield from felt_again(run, 1, 3)

@@ -217,7 +217,7 @@ def deep_drawing_ranks(bench):
     """The same cup on one rank and on two."""
     one, two = (bench.run("deep_drawing", ranks=ranks) for ranks in (1, 2))
     for way in (5.0, 10.0, 15.0, 20.0):
-        bench.close(f"{way:g} mm: force on the punch", punch_force(two, way), punch_force(one, way), 0.005)
+        bench.close(f"{way:g} mm: force on the punch", punch_force(two, way), punch_force(one, way), 1e-4)
 
 
 CASES = {

@@ -104,9 +104,9 @@ def pinched_ring(force):
 def pinch(cells, friction=None):
     """Changes to the deck: discs instead of the plates, until the walls between them are pressed on each other."""
     discs = [{"sphere": {"centre": [0, sign * 1.31], "radius": 0.3, "displacement": {"y": f"{-sign}*t"}}} for sign in (1, -1)]
-    pairs = [{"name": "inside", "self": "skin", "enforce": {"penalty": {"alpha": 0.1}}}]
+    pairs = [{"name": "inside", "self": "skin", "enforce": {"penalty": {}}}]
     for name, disc in zip(("top", "bottom"), discs):
-        pairs.append({"name": name, "slave": "outside", "master": disc, "enforce": {"penalty": {"alpha": 0.1}}, "search_distance": 3})
+        pairs.append({"name": name, "slave": "outside", "master": disc, "enforce": {"penalty": {"alpha": 0.05}}, "search_distance": 3})
     for pair in pairs if friction else []:
         pair["friction"] = {"coulomb": {"mu": friction}}
     automatic = {"first": 0.02, "largest": 0.04, "target_iterations": 12}
@@ -115,7 +115,7 @@ def pinch(cells, friction=None):
         "contact": pairs,
         "steps": [
             {"name": "pinch", "to": 0.98, "increments": {"auto": automatic}},
-            {"name": "press", "to": 0.995, "increments": {"auto": {**automatic, "first": 0.1, "largest": 0.1}}},
+            {"name": "press", "to": 0.991, "increments": {"auto": {**automatic, "first": 0.1, "largest": 0.1}}},
         ],
     }
 
