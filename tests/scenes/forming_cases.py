@@ -187,16 +187,21 @@ def drawing_bounds(results, rim):
     return 2.0 * np.pi * WALL * stress, 2.0 * np.pi * WALL * above
 
 
+def check_drawing(bench, results, way):
+    """Force and rim while the flange is being drawn in."""
+    state = results.at(way)
+    rim = rim_radius(state)
+    below, above = drawing_bounds(results, rim)
+    force = punch_force(results, way)
+    bench.below(f"{way:g} mm: least force / force on the punch", below / force, 1.0)
+    bench.below(f"{way:g} mm: force on the punch / bound above", force / above, 1.0)
+    # Hoop compression alone at the rim: the other two strains are half of it.
+    bench.close(f"{way:g} mm: thickness of the rim", thickness(state)[1][-1], np.sqrt(BLANK / rim), 0.01)
+
+
 def check_cup(bench, results):
     for way in (10.0, 15.0):
-        state = results.at(way)
-        rim = rim_radius(state)
-        below, above = drawing_bounds(results, rim)
-        force = punch_force(results, way)
-        bench.below(f"{way:g} mm: least force / force on the punch", below / force, 1.0)
-        bench.below(f"{way:g} mm: force on the punch / bound above", force / above, 1.0)
-        # Hoop compression alone at the rim: the other two strains are half of it.
-        bench.close(f"{way:g} mm: thickness of the rim", thickness(state)[1][-1], np.sqrt(BLANK / rim), 0.01)
+        check_drawing(bench, results, way)
     radius, thick = thickness(results)
     bench.below("rim / radius of the die's opening (all of it is drawn through)", rim_radius(results) / DIE_OPENING, 1.0)
     bench.close("thickness of the rim in the end", thick[-1], np.sqrt(BLANK / rim_radius(results)), 0.02)
@@ -206,6 +211,14 @@ def check_cup(bench, results):
     bench.below("0.85 / thinnest", 0.85 / thick.min(), 1.0)
     work, stored, dissipated = (results.history[f"energy_{name}"][-1] for name in ("external_work", "stored", "dissipated"))
     bench.below("work not accounted for / work", abs(work - stored - dissipated) / work, 0.003)
+
+
+def deep_drawing_start(bench):
+    """The first third of the way."""
+    automatic = {"first": 0.01, "largest": 0.06, "target_iterations": 20}
+    steps = [{"name": "bend", "to": 5, "increments": {"auto": automatic}}]
+    steps.append({"name": "draw", "to": 10, "increments": {"auto": {**automatic, "first": 0.06}}})
+    check_drawing(bench, bench.run("deep_drawing", {"steps": steps}, ranks=1), 10.0)
 
 
 def deep_drawing_cup(bench):
@@ -223,5 +236,5 @@ def deep_drawing_ranks(bench):
 CASES = {
     "upsetting": {"smooth": upsetting_smooth, "rough": upsetting_rough},
     "rolling_wheel": {"braked": wheel_braked, "turn": wheel_turn},
-    "deep_drawing": {"cup": deep_drawing_cup, "ranks": deep_drawing_ranks},
+    "deep_drawing": {"start": deep_drawing_start, "cup": deep_drawing_cup, "ranks": deep_drawing_ranks},
 }
