@@ -17,8 +17,8 @@ Line(4) = {4, 1};
 Curve Loop(1) = {1, 2, 3, 4};
 Plane Surface(1) = {1};
 Transfinite Curve {1, 3} = Ceil(12/h) + 1;
-Transfinite Curve {2} = slab_rows + 1 Using Progression 0.9^(0.2/h*1.3);
-Transfinite Curve {4} = slab_rows + 1 Using Progression 1/0.9^(0.2/h*1.3);
+Transfinite Curve {2} = slab_rows + 1 Using Progression 0.9^(1.3*h/0.2);
+Transfinite Curve {4} = slab_rows + 1 Using Progression 1/0.9^(1.3*h/0.2);
 Transfinite Surface {1};
 Recombine Surface {1};
 

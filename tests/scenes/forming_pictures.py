@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the pictures of the forming scenes into inputs/: forming_pictures.py --program PATH [SCENE ...]. Runs what it draws."""
+"""Draws the pictures of the forming scenes and of ring_crush into inputs/: forming_pictures.py --program PATH [SCENE ...]. Runs what it draws."""
 import argparse
 import tempfile
 
@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import forming_cases as cases
+import self_contact_cases as rings
 from harness import TOP, Bench
 from solid_pictures import REFERENCE, SIMULATION, draw_deformed
 
@@ -95,7 +96,28 @@ def deep_drawing(bench):
     return figure
 
 
-SCENES = {function.__name__: function for function in (upsetting, rolling_wheel, deep_drawing)}
+def ring_crush(bench):
+    crushed, pinched = bench.run("ring_crush"), bench.run("ring_crush", rings.pinch(16))
+    figure, axes = plt.subplots(1, 3, figsize=(11, 3.6), layout="constrained", width_ratios=(1, 1, 1.3))
+    for panel, results, title in zip(axes, (crushed, pinched), ("plates, approach 0.75", "discs, walls on each other")):
+        draw_deformed(panel, results, results.nodal["von_mises"].ravel(), "von Mises stress")
+        panel.set_title(title)
+    for results, points, colour, name in (
+        (crushed, rings.PLATES, SIMULATION["color"], "plates"),
+        (pinched, [(force, rings.pinched_ring(force)) for force in np.linspace(0.5, 7.5, 15)], "0.4", "discs"),
+    ):
+        history = results.history
+        axes[2].plot(history["time"], -history["contact_top_force_y"], color=colour, label=name)
+        forces, approaches = zip(*points)
+        axes[2].plot(approaches, forces, "s", ms=4, color=REFERENCE["color"], label="elastica" if name == "plates" else None)
+    axes[2].set_xlabel("approach / R")
+    axes[2].set_ylabel("force / (E I / R²)")
+    axes[2].set_ylim(0.0, 25.0)
+    axes[2].legend()
+    return figure
+
+
+SCENES = {function.__name__: function for function in (upsetting, rolling_wheel, deep_drawing, ring_crush)}
 
 
 def main():

@@ -26,6 +26,7 @@ def ring_under_pressure(cells):
             {"on": "outside", "pressure": f"t/{1 + 0.5 * t}"},
         ],
         "contact": [{"name": "inside", "self": "skin", "enforce": {"penalty": {}}}],
+        "petsc": {},  # the default line search; with that of the deck increments are tiny where it buckles
         "steps": [
             {"name": f"to_{i}", "to": time, "increments": {"auto": {"first": 0.2, "largest": 0.5}}}
             for i, time in enumerate(times)
@@ -73,6 +74,71 @@ def ring_plates(bench):
         force = np.interp(approach, history["time"], -history["contact_top_force_y"])
         bench.close(f"force at an approach of {approach} diameters", force, exact, 0.01)
     bench.below("contact of the ring with itself", history["contact_inside_area"].max(), 0.0)
+
+
+def pinched_ring(force):
+    """Approach of each of two opposite point loads on the inextensible ring of radius 1 and bending stiffness 1. From the
+    load to the side, tangent angle a: a'' = -force / 2 cos a, a = 0 and -pi / 2 at the ends, natural curvature -1."""
+    count = 100
+    step = 0.5 * np.pi / count
+
+    def slope(state):
+        angle, bend = state[:2]
+        return np.array([bend - 1.0, -0.5 * force * np.cos(angle), -np.sin(angle)])
+
+    def end(first_bend):
+        state = np.array([0.0, first_bend, 0.0])  # angle, change of curvature, height of the load above the side
+        for _ in range(count):
+            one = slope(state)
+            two = slope(state + 0.5 * step * one)
+            three = slope(state + 0.5 * step * two)
+            state = state + step / 6.0 * (one + 2.0 * two + 2.0 * three + slope(state + step * three))
+        return state
+
+    low, high = 0.2 * force, 0.5 * force
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if end(middle)[0] < -0.5 * np.pi else (low, middle)
+    return 1.0 - end(0.5 * (low + high))[2]
+
+
+def pinch(cells, friction=None):
+    """Changes to the deck: discs instead of the plates, until the walls between them are pressed on each other."""
+    discs = [{"sphere": {"centre": [0, sign * 1.31], "radius": 0.3, "displacement": {"y": f"{-sign}*t"}}} for sign in (1, -1)]
+    pairs = [{"name": "inside", "self": "skin", "enforce": {"penalty": {}}}]
+    for name, disc in zip(("top", "bottom"), discs):
+        pairs.append({"name": name, "slave": "outside", "master": disc, "enforce": {"penalty": {"alpha": 0.05}}, "search_distance": 3})
+    for pair in pairs if friction else []:
+        pair["friction"] = {"coulomb": {"mu": friction}}
+    automatic = {"first": 0.02, "largest": 0.04, "target_iterations": 12}
+    return {
+        "mesh.parameters.n": cells,
+        "contact": pairs,
+        "steps": [
+            {"name": "pinch", "to": 0.98, "increments": {"auto": automatic}},
+            {"name": "press", "to": 0.991, "increments": {"auto": {**automatic, "first": 0.1, "largest": 0.1}}},
+        ],
+    }
+
+
+def check_pinched(bench, results):
+    time, force = results.history["time"], -results.history["contact_top_force_y"]
+    touching = results.history["contact_inside_area"] > 0
+    free = ~touching & (time > 0.3)
+    error = max(abs(pinched_ring(f) - t) for t, f in list(zip(time[free], force[free]))[::12])
+    bench.below("approach at the same force against the elastica / radius", error, 0.02)
+    bench.close("approach at which the walls meet: radius less half of the thickness", time[touching].min(), 0.99, 0.002)
+    # What the discs press with beyond what bends the ring goes from wall to wall.
+    bench.close("force between the walls", wall_force(results), force[-1] - force[~touching][-1], 0.03)
+
+
+def ring_pinched(bench):
+    check_pinched(bench, bench.run("ring_crush", pinch(16), ranks=1))
+
+
+def ring_pinched_friction(bench):
+    """By symmetry nothing slides where the walls meet, and next to nothing under the discs."""
+    check_pinched(bench, bench.run("ring_crush", pinch(16, friction=0.3)))
 
 
 # --- a tube crushed along its axis ------------------------------------------------------------------------------------
@@ -138,7 +204,12 @@ def ten_discs(bench):
 
 
 CASES = {
-    "ring_crush": {"plates": ring_plates, "pressure": ring_pressure},
+    "ring_crush": {
+        "plates": ring_plates,
+        "pressure": ring_pressure,
+        "pinch": ring_pinched,
+        "pinch_friction": ring_pinched_friction,
+    },
     "tube_buckling_2d": {"first_fold": tube_first_fold},
     "ten_discs": {"balance": ten_discs},
 }
