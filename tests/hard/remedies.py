@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Each remedy alone: remedies.py --program PATH.
 
-A tall block pushed at its top, which rocks on its edge (the scene `rocking` of scenes.py), in one increment a step that may
-not be cut, with augmentations, friction and steps that plain iterations do not get through. Each case is run with no
-remedy, must end with status 3 and a diagnosis, and with one, must be certified, meet the scene's own figures, and say in
-the summary that the remedy has helped. A run that gives up must leave a checkpoint and its last iterate.
+A tall block pushed at its top, which rocks on its edge, or a ridge under a ridge (`rocking` and `deep_ridge_friction` of
+scenes.py), in one increment a step that may not be cut (but for the case of cutbacks), with augmentations, friction and
+steps that plain iterations do not get through. Each case is run with no remedy, must end with status 3 and a diagnosis,
+and with one, must be certified, meet the scene's own figures, and say in the summary that the remedy has helped. A run that gives up must leave a checkpoint and its last iterate.
 """
 import argparse
 import json
@@ -20,8 +20,10 @@ from scenes import SCENES
 CASES = {
     "merit_search": ("rocking", 0, {"semismooth": {"alpha": 100}}, None, []),
     "held_points": ("rocking", 0, {"penalty": {"alpha": 1e4}}, 2.0, []),
+    "lagged_friction": ("deep_ridge_friction", 0, {"penalty": {"alpha": 1000}}, None, []),
     "softer_augmentation": ("rocking", 0, {"penalty": {"alpha": 1e4}}, None, []),
     "vanishing_support": ("rocking", 0, {"penalty": {"alpha": 1e4}}, 2.0, ["-snes_linesearch_type", "basic"]),
+    "cutbacks": ("rocking", 0, {"semismooth": {"alpha": 100}}, None, []),
 }
 
 
@@ -36,15 +38,16 @@ def examine(options, remedy, root):
         contact["enforce"] = enforce
         if mu:
             contact["friction"] = {"coulomb": {"mu": mu}}
-    for step in deck["steps"]:
-        step["increments"] = {"auto": {"first": 1.0, "smallest": 1.0}}
     deck.pop("output", None)
     path = folder / "deck.yaml"
-    path.write_text(yaml.safe_dump(deck, sort_keys=False), encoding="utf-8")
     faults = []
 
     def run(chosen):
-        done = start(options, 1, [path, "--out", folder / chosen, *words, "-remedies", chosen])
+        cuts = chosen == "cutbacks"  # the rung above those of -remedies
+        for step in deck["steps"]:
+            step["increments"] = {"auto": {"first": 1.0, "smallest": 1 / 64 if cuts else 1.0}}
+        path.write_text(yaml.safe_dump(deck, sort_keys=False), encoding="utf-8")
+        done = start(options, 1, [path, "--out", folder / chosen, *words, "-remedies", "none" if cuts else chosen])
         summary = json.loads((folder / chosen / "summary.json").read_text(encoding="utf-8"))
         return done.returncode, summary, done.stdout
 
@@ -60,7 +63,8 @@ def examine(options, remedy, root):
     status, summary, said = run(remedy)
     if status != 0:
         return [*faults, f"ends with {status} with the remedy\n{said[-1500:]}"]
-    if not summary["remedies"].get(remedy, {}).get("helped"):
+    used = summary["remedies"].get(remedy, {})
+    if not (used if remedy == "cutbacks" else used.get("helped")):
         faults.append(f"the remedy was not what helped: {summary['remedies']}")
     for what, error, tolerance in check(Results(deck, folder / remedy)):
         if not error <= (max(tolerance, PENALTY_TOLERANCE) if "penalty" in enforce else tolerance):

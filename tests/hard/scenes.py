@@ -368,9 +368,10 @@ def push_and_answer(run):
 @scene("a slave node on the ridge between two master segments", name="node_on_ridge", kink=-0.2)
 @scene("valley with friction", FRICTIONAL, name="node_in_valley_friction", kink=0.2, mu=0.3)
 @scene("ridge with friction", FRICTIONAL, name="node_on_ridge_friction", kink=-0.2, mu=0.3)
-def kinked(seed, kink, mu=None):
+@scene("ridge with friction, pressed deep in one increment", FRICTIONAL, name="deep_ridge_friction", kink=-0.2, mu=0.3, press=0.06)
+def kinked(seed, kink, mu=None, press=0.02):
     rise = lambda x: kink * abs(x - 0.5)  # noqa: E731
-    mesh, whole = bent_pair(0, (rise, rise), 0.02, mu, ((2, 1), (4, 1)))
+    mesh, whole = bent_pair(0, (rise, rise), press, mu, ((2, 1), (4, 1)))
     if seed:  # the node beside the kink instead of on it
         mesh.nodes[:, 0] += np.where(np.isclose(mesh.nodes[:, 0], 0.5) & (mesh.nodes[:, 1] > 0.4), 1e-9 * seed, 0.0)
     return mesh, whole, push_and_answer
