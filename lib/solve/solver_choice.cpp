@@ -45,6 +45,9 @@ std::string choose_newton_solver(const Problem& problem) {
     default_option("-snes_ksp_ew", "true");
     default_option("-snes_ksp_ew_rtol0", "1e-2");
     default_option("-snes_ksp_ew_rtolmax", "1e-2");
+    // Residuals as Newton's method measures them, so that a solve can be told where to stop
+    // (Newton::limit_linear_solve).
+    if (option("-ksp_type") == KSPCG) default_option("-ksp_norm_type", "unpreconditioned");
     if (option("-ksp_type") == KSPGMRES) {
       default_option("-ksp_gmres_restart", "40");
       default_option("-ksp_pc_side", "right");
