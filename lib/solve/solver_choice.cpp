@@ -11,8 +11,6 @@ namespace {
 /// Unknowns above which factorizations cost more than about 15 back-substitutions.
 constexpr PetscInt kept_from_2d = 400'000;
 constexpr PetscInt kept_from_3d = 20'000;
-/// Unknowns above which displacement-only problems in 3D go to a Krylov method with multigrid.
-constexpr PetscInt krylov_from_3d = 50'000;
 /// Unknowns above which memory counts more than the time of multigrid's set-up.
 constexpr PetscInt lean_products_from = 1'000'000;
 
