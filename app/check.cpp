@@ -1,6 +1,7 @@
 #include "check.hpp"
 
 #include "base/error.hpp"
+#include "solve/solver_choice.hpp"
 #include "validate.hpp"
 
 #include <algorithm>
@@ -49,6 +50,15 @@ double matrix_bytes(const RawMesh& raw, double unknowns) {
   return unknowns * (raw.dim == 2 ? 18.0 : 81.0) * 12.0 * raw.order;
 }
 
+/// Does the solver that the program chooses for this deck factorize nothing large?
+bool goes_to_multigrid(const Deck& deck, const RawMesh& raw, double unknowns) {
+  const auto displacements_only = [](const auto& contact) {
+    return std::holds_alternative<UzawaDeck>(contact.enforce) || std::holds_alternative<PenaltyDeck>(contact.enforce);
+  };
+  return raw.dim == 3 && unknowns > krylov_from_3d &&
+         std::all_of(deck.contact.begin(), deck.contact.end(), displacements_only);
+}
+
 /// Two digits are more than the estimate is worth.
 std::string memory_text(double bytes) {
   std::ostringstream text;
@@ -57,6 +67,21 @@ std::string memory_text(double bytes) {
     text << std::setprecision(0) << std::max(1.0, bytes / 1e6) << " MB";
   else
     text << std::setprecision(1) << bytes / 1e9 << " GB";
+  return text.str();
+}
+
+/// What a run needs, in words. Multigrid: lib/solve/README.md.
+std::string describe_memory(const Deck& deck, const RawMesh& raw, double unknowns) {
+  const double matrix = matrix_bytes(raw, unknowns);
+  std::ostringstream text;
+  if (goes_to_multigrid(deck, raw, unknowns))
+    text << memory_text(2.2 * matrix) << " in all with multigrid (matrix " << memory_text(matrix)
+         << ", a little more than that for the rest)";
+  else
+    text << memory_text(factor_bytes(raw.dim, unknowns) + matrix)
+         << " in all with the direct solver (order of magnitude: factor "
+         << (raw.dim == 2 ? "124 bytes x N log2 N" : "220 bytes x N^(4/3)") << ", matrix " << memory_text(matrix)
+         << ")";
   return text.str();
 }
 
@@ -131,13 +156,9 @@ std::string check_report(MPI_Comm comm, const std::string& deck_path) {
   for (const auto& step : deck.steps)
     out << step.name.value << " to t = " << step.to << "; ";
   const auto unknowns = count_unknowns(deck, raw);
-  const double factor = factor_bytes(raw.dim, unknowns.total()), matrix = matrix_bytes(raw, unknowns.total());
   out << "\n  unknowns " << std::fixed << std::setprecision(0) << unknowns.total() << " (" << unknowns.displacement
       << " displacement, " << unknowns.multipliers << " contact tractions)\n"
-      << "  memory   about " << memory_text(factor + matrix)
-      << " in all with the direct solver (order of magnitude: factor "
-      << (raw.dim == 2 ? "124 bytes x N log2 N" : "220 bytes x N^(4/3)") << ", matrix " << memory_text(matrix)
-      << "), and about 100 MB for each rank\n"
+      << "  memory   about " << describe_memory(deck, raw, unknowns.total()) << ", and about 100 MB for each rank\n"
       << "The deck fits its mesh; nothing was solved or written.\n";
   return out.str();
 }

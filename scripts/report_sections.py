@@ -171,10 +171,13 @@ def time_budget(run):
         return ""
     wall = resources.get("wall_seconds", 0.0) or 1.0
     phases = sorted(resources.get("phase_seconds", {}).items(), key=lambda item: -item[1])
-    rows = [(name, seconds, f"{100 * seconds / wall:.1f} %", bar(seconds / wall)) for name, seconds in phases]
+    growth = resources.get("memory_growth_bytes", {})
+    rows = [(name, seconds, f"{100 * seconds / wall:.1f} %", bar(seconds / wall), round(growth.get(name, 0.0) / 1e6))
+            for name, seconds in phases]
     return (f"<p>{text(wall)} s wall time, {text(resources.get('cpu_seconds', 0.0))} s CPU time over all ranks, "
             f"{text(round(resources.get('peak_memory_bytes', 0.0) / 1e6))} MB peak memory (sum over ranks). "
-            "Phases, mean over ranks:</p>" + table(("phase", "seconds", "share", ""), rows))
+            "Phases, seconds as mean over ranks, MB by which the peak rose meanwhile:</p>"
+            + table(("phase", "seconds", "share", "", "MB"), rows))
 
 
 def audit(run):
