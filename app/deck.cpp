@@ -307,6 +307,17 @@ ObjectRule<StepDeck> step_rule() {
   return rule;
 }
 
+ObjectRule<FigureDeck> figure_rule() {
+  WordRule<int> component;
+  component.word("x", 0, "Along x; in axisymmetric space the radius.")
+      .word("y", 1, "Along y; in axisymmetric space the axis.")
+      .word("z", 2, "Along z, in solid space.");
+  ObjectRule<FigureDeck> rule;
+  rule.required("of", &FigureDeck::of, text(group_meaning), "The physical group whose nodes' mean displacement it is.")
+      .required("component", &FigureDeck::component, component, "Which component.");
+  return rule;
+}
+
 ObjectRule<AdaptDeck> adapt_rule() {
   WordRule<AdaptQuantity> quantity;
   quantity
@@ -426,6 +437,11 @@ Rule<Deck> deck_rule() {
                 "and summary say when that leads to other contact tractions. Takes about three times as long. Not for "
                 "`vi` and `basis: dual`.",
                 "A. Klarbring, Ing.-Arch. 60 (1990) 529-541.")
+      .optional(
+          "figures", &Deck::figures, map_of("name of the figure", Rule<FigureDeck>(figure_rule())),
+          "Mean displacements at the end whose errors the summary shall estimate (`errors.figures`), besides those "
+          "of the pairs' forces and peak pressures. For linear elastic solids without friction.",
+          "R. Becker, R. Rannacher, Acta Numerica 10 (2001) 1-102.")
       .optional("adapt", &Deck::adapt, adapt_rule(),
                 "Mesh anew from the estimated error and run the whole history again, until a quantity of the end is "
                 "accurate enough. The .geo is meshed freely, in triangles or tetrahedra, also where it has transfinite "

@@ -132,6 +132,12 @@ struct StepDeck {
   IncrementsDeck increments = 1;
 };
 
+/// A figure whose error is asked for: the mean of a displacement component over the nodes of a group.
+struct FigureDeck {
+  Located<std::string> of; // physical group
+  int component = 0;
+};
+
 /// What adaptive meshing makes accurate: figures of the end of the run.
 enum class AdaptQuantity { PeakPressure, Force, Energy, EnergyNorm };
 
@@ -186,6 +192,7 @@ struct Deck {
   std::optional<StabilizationDeck> stabilization; // absent: none
   bool estimate_path_error = false;
   bool look_for_other_solutions = false;
+  std::map<std::string, FigureDeck> figures; // by name
   std::optional<AdaptDeck> adapt;
   CertificateDeck certificate;
   OutputDeck output;

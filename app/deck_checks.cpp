@@ -364,6 +364,13 @@ void check_petsc(const Check& check) {
                                         "without its dash, for example `snes_rtol: 1e-9`.");
 }
 
+void check_figures(const Check& check) {
+  for (const auto& [name, figure] : check.deck.figures)
+    if (check.sound("space") && figure.component >= check.deck.dim())
+      check.fail({"figures", name, "component"}, "figures." + name + ".component: there is no z with space: " +
+                                                     space_name(check.deck) + ". Take x or y.");
+}
+
 void check_adapt(const Check& check) {
   const auto& [deck, root, reading] = check;
   if (!deck.adapt || !check.sound("adapt")) return;
@@ -421,6 +428,7 @@ void check_deck(const Deck& deck, const DeckNode& root, Reading& reading) {
   check_contact(check);
   check_steps(check);
   check_other_solutions(check);
+  check_figures(check);
   check_adapt(check);
   check_output(check);
   check_petsc(check);

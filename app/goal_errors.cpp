@@ -24,12 +24,15 @@ namespace {
 /// Pairs beyond which the figures are too many to ask for each unasked.
 constexpr std::size_t most_pairs = 8;
 
+/// Where the summary has the figures that the deck names.
+const char* const mean_displacements = "mean_displacement";
+
 using Direction = std::array<double, 3>;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string reason_against(const Scene& scene) {
-  if (scene.contacts.empty()) return "no contact";
+  if (scene.contacts.empty() && scene.deck.figures.empty()) return "no contact, and the deck names no figures";
   if (!scene.bulk->tangent_is_constant()) return "only for linear elastic solids in small kinematics";
   if (scene.bounds || scene.conditions)
     return "not for `vi` and `semismooth` with the dual basis, which solve transformed systems";
@@ -76,6 +79,13 @@ std::vector<double> peak_weights(const Mesh& mesh, const ContactPair& pair, cons
   return weights;
 }
 
+void take_prescribed_out(const Scene& scene, Vec vector) {
+  VecArray values(vector);
+  const PetscInt first = scene.layout->first_equation();
+  for (PetscInt i = 0; i < values.size(); ++i)
+    if (scene.problem->is_prescribed(first + i)) values[i] = 0.0;
+}
+
 /// The displacement w of one figure under assembly.
 class Lifting {
  public:
@@ -109,16 +119,8 @@ class Lifting {
   Vec finish() {
     AMT_PETSC(VecAssemblyBegin(vector_));
     AMT_PETSC(VecAssemblyEnd(vector_));
-    free_only(vector_);
+    take_prescribed_out(scene_, vector_);
     return vector_;
-  }
-
-  /// Takes prescribed components out.
-  void free_only(Vec vector) const {
-    VecArray values(vector);
-    const PetscInt first = scene_.layout->first_equation();
-    for (PetscInt i = 0; i < values.size(); ++i)
-      if (scene_.problem->is_prescribed(first + i)) values[i] = 0.0;
   }
 
  private:
@@ -141,20 +143,52 @@ VecHandle solid_forces(Scene& scene, Vec unknowns) {
   return forces;
 }
 
-/// Adds the figure of this lifting; false where the linear solver fails. Collective.
+/// Adds the figure whose influence is `lift` − K⁻¹ `forces` (no lift: K⁻¹ forces); false where the linear solver fails.
+/// Collective.
+bool add_influence(Scene& scene, IncrementSolver& solver, Vec lift, Vec forces, FigureInfluences::Figure figure,
+                   FigureInfluences& found) {
+  const VecHandle response = scene.layout->new_vector();
+  take_prescribed_out(scene, forces);
+  if (!solver.solve_linearized(forces, response)) return false;
+  if (lift) AMT_PETSC(VecAYPX(response, -1.0, lift));
+  const auto field = scene.problem->state_at(response).displacement;
+  figure.influence.assign(field.begin(), field.end());
+  found.figures.push_back(std::move(figure));
+  return true;
+}
+
+/// Of this lifting.
 bool ask(Scene& scene, IncrementSolver& solver, Lifting& lifting, const std::string& pair, const char* name,
          FigureInfluences& found) {
   const Vec lift = lifting.finish();
-  VecHandle forces = solid_forces(scene, lift), response = scene.layout->new_vector();
+  const VecHandle forces = solid_forces(scene, lift);
   PetscScalar work = 0.0;
   AMT_PETSC(VecDot(forces, solver.accepted(), &work));
   if (work == 0.0) return true;
-  lifting.free_only(forces);
-  if (!solver.solve_linearized(forces, response)) return false;
-  AMT_PETSC(VecAYPX(response, -1.0, lift));
-  const auto field = scene.problem->state_at(response).displacement;
-  found.figures.push_back({pair, name, -work, {field.begin(), field.end()}});
-  return true;
+  return add_influence(scene, solver, lift, forces, {.pair = pair, .name = name, .value = -work, .influence = {}},
+                       found);
+}
+
+/// A mean displacement: dQ/du is one over the number of nodes at each of them.
+bool ask(Scene& scene, IncrementSolver& solver, const std::string& name, const FigureDeck& figure,
+         FigureInfluences& found) {
+  const VecHandle weights = scene.layout->new_vector();
+  double count = 0.0;
+  const auto& nodes = scene.mesh.node_groups.at(figure.of.value);
+  for (const auto node : nodes)
+    if (node < scene.mesh.num_owned) {
+      AMT_PETSC(VecSetValue(weights, scene.layout->equation(node, figure.component), 1.0, ADD_VALUES));
+      count += 1.0;
+    }
+  AMT_PETSC(VecAssemblyBegin(weights));
+  AMT_PETSC(VecAssemblyEnd(weights));
+  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_DOUBLE, MPI_SUM, scene.mesh.comm);
+  AMT_PETSC(VecScale(weights, 1.0 / count));
+  PetscScalar value = 0.0;
+  AMT_PETSC(VecDot(weights, solver.accepted(), &value));
+  if (value == 0.0) return true;
+  return add_influence(scene, solver, nullptr, weights,
+                       {.pair = mean_displacements, .name = name, .value = value, .influence = {}}, found);
 }
 
 } // namespace
@@ -177,6 +211,8 @@ FigureInfluences influences_on_figures(Scene& scene, IncrementSolver& solver, st
         !ask(scene, solver, around, pair.name, "peak_pressure", found))
       found.reason = "the linear solver failed";
   }
+  for (const auto& [name, figure] : scene.deck.figures)
+    if (found.reason.empty() && !ask(scene, solver, name, figure, found)) found.reason = "the linear solver failed";
   found.seconds = now() - begun;
   return found;
 }
@@ -195,6 +231,7 @@ FigureErrors estimate_figure_errors(Scene& scene, Vec unknowns, FigureInfluences
     const double size = std::abs(figure.value);
     errors.figures.push_back({.pair = figure.pair,
                               .figure = figure.name,
+                              .value = figure.value,
                               .relative = goals[i].error / figure.value,
                               .bound = goals[i].bound / size,
                               .cells = std::move(goals[i].cells)});
@@ -207,8 +244,12 @@ FigureErrors estimate_figure_errors(Scene& scene, Vec unknowns, FigureInfluences
 
 nlohmann::ordered_json to_json(const FigureErrors& errors, double run_seconds) {
   nlohmann::ordered_json json;
-  for (const auto& figure : errors.figures)
-    json[figure.pair][figure.figure] = {{"relative", figure.relative}, {"without_cancelling", figure.bound}};
+  for (const auto& figure : errors.figures) {
+    auto& entry = json[figure.pair][figure.figure];
+    if (figure.pair == mean_displacements) entry["value"] = figure.value;
+    entry["relative"] = figure.relative;
+    entry["without_cancelling"] = figure.bound;
+  }
   if (!errors.reason.empty()) json["reason"] = "not estimated: " + errors.reason;
   json["meaning"] = "exact less computed figure over the computed one, estimated: error of the stress weighed by the "
                     "influence of each cell on the figure (dual weighted residual, recovered stresses); "

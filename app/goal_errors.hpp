@@ -1,5 +1,5 @@
-// Errors of the figures that are asked for most, each pair's force and largest pressure, from the influence of every
-// cell on them: `errors.figures` of the summary.
+// Errors of the figures that are asked for most, each pair's force and largest pressure, and of those that the deck
+// names, from the influence of every cell on them: `errors.figures` of the summary.
 #pragma once
 
 #include "increment_solver.hpp"
@@ -14,6 +14,7 @@ namespace amontons {
 /// A figure of the last accepted state with what the mesh makes of it.
 struct FigureError {
   std::string pair, figure;  // "force" (its size), "peak_pressure" (mean of the pressure above half of the largest)
+  double value = 0.0;        // of a mean displacement; else in a unit of its own
   double relative = 0.0;     // (exact − computed) / computed, estimated, with its sign
   double bound = 0.0;        // the same if the parts of the cells did not cancel
   std::vector<double> cells; // |part| of this rank's cells, over the figure

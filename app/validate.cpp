@@ -114,13 +114,15 @@ bool has_any(const VectorDeck& vector) {
   return std::any_of(vector.begin(), vector.end(), [](const auto& component) { return component.has_value(); });
 }
 
-/// Checks the groups that conditions act on; returns the surfaces that are loaded.
+/// Checks the groups that conditions act on and figures are of; returns the surfaces that are loaded.
 std::vector<Located<std::string>> check_boundary(Fit& fit) {
   std::vector<Located<std::string>> loaded;
   for (const auto& entry : fit.deck.boundary) {
     const bool load = has_any(entry.traction) || entry.pressure;
     if (fit.require_group(entry.on, load ? fit.raw.dim - 1 : -1) && load) loaded.push_back(entry.on);
   }
+  for (const auto& [name, figure] : fit.deck.figures)
+    fit.require_group(figure.of, -1);
   return loaded;
 }
 

@@ -201,7 +201,7 @@ def second_order_3d(bench):
 
 
 def figures_2d(bench):
-    """The estimated errors of force and peak pressure under a prescribed approach, against the values with cells of order 2
+    """The estimated errors of force and peak pressure under a prescribed approach, and of the approach under a force, against the values with cells of order 2
     (whose own errors are a hundredth): with their signs, for each formulation that has them, on 1 and 2 ranks."""
     def run(order, enforce, ranks=2):
         changes = {"boundary.3": {"on": "indenter_cut", "displacement": {"x": 0, "y": "-0.02*t"}}, "steps.0.increments": 1,
@@ -225,6 +225,15 @@ def figures_2d(bench):
             alone = run(1, enforce, 1)[2]
             for figure in ("force", "peak_pressure"):
                 bench.close(f"{figure} on 1 rank", alone[figure]["relative"], errors[figure]["relative"], 1e-6)
+
+    def approach(order):
+        changes = {"steps.0.increments": 1, "mesh.parameters.h": 0.1, "mesh.order": order,
+                   "figures": {"approach": {"of": "indenter_cut", "component": "y"}}}
+        return bench.run("hertz_2d", changes).summary["errors"]["figures"]["mean_displacement"]["approach"]
+
+    coarse = approach(1)
+    ratio = coarse["relative"] / (approach(2)["value"] / coarse["value"] - 1.0)
+    bench.close("estimated / true error of the approach", ratio, 1.0, 0.2)
 
 
 CASES = {

@@ -19,17 +19,9 @@ const Elastic material{100.0, 0.3};
 /// few hexahedra of order 2 that a dense solver can do: they start at x = 2.
 Mesh box(MPI_Comm comm, ElementType type, int n) {
   const double start = type == ElementType::Hexahedron27 ? 2.0 : 1.0;
-  Mesh mesh = box_mesh(comm, type, {n, n, n}, [start](auto p) -> std::array<double, 3> {
+  return enclosed(box_mesh(comm, type, {n, n, n}, [start](auto p) -> std::array<double, 3> {
     return {start + p[0], p[1], p[2]};
-  });
-  for (const auto& [name, side] : mesh.surfaces)
-    for (std::int32_t f = 0; f < side.size(); ++f) {
-      mesh.exterior.types.push_back(side.types[f]);
-      mesh.exterior.nodes.insert(mesh.exterior.nodes.end(), side.facet(f).begin(), side.facet(f).end());
-      mesh.exterior.offsets.push_back(static_cast<std::int32_t>(mesh.exterior.nodes.size()));
-      mesh.exterior.bodies.push_back(0);
-    }
-  return mesh;
+  }));
 }
 
 /// Lamé's field u_r = A r + B / r about the origin (about the axis in solid space), without a body force.

@@ -27,14 +27,7 @@ struct Figures {
 };
 
 Figures figures(ElementType type, int n) {
-  Mesh mesh = box_mesh(PETSC_COMM_SELF, type, {n, n, n}, [](auto p) { return p; });
-  for (const auto& [name, side] : mesh.surfaces)
-    for (std::int32_t f = 0; f < side.size(); ++f) {
-      mesh.exterior.types.push_back(side.types[f]);
-      mesh.exterior.nodes.insert(mesh.exterior.nodes.end(), side.facet(f).begin(), side.facet(f).end());
-      mesh.exterior.offsets.push_back(static_cast<std::int32_t>(mesh.exterior.nodes.size()));
-      mesh.exterior.bodies.push_back(0);
-    }
+  const Mesh mesh = enclosed(box_mesh(PETSC_COMM_SELF, type, {n, n, n}, [](auto p) { return p; }));
   const DofLayout layout(mesh, {}, {});
   BulkForm solid(layout, Space::PlaneStrain, {material});
   // Even about the planes of symmetry, and nothing at the free corner: both fields are smooth.

@@ -252,4 +252,16 @@ inline void roughen(Mesh& mesh, double reach) {
   straighten(mesh);
 }
 
+/// The mesh with its sides as the exterior of the one body.
+inline Mesh enclosed(Mesh mesh) {
+  for (const auto& [name, side] : mesh.surfaces)
+    for (std::int32_t f = 0; f < side.size(); ++f) {
+      mesh.exterior.types.push_back(side.types[f]);
+      mesh.exterior.nodes.insert(mesh.exterior.nodes.end(), side.facet(f).begin(), side.facet(f).end());
+      mesh.exterior.offsets.push_back(static_cast<std::int32_t>(mesh.exterior.nodes.size()));
+      mesh.exterior.bodies.push_back(0);
+    }
+  return mesh;
+}
+
 } // namespace amontons::testing
