@@ -5,6 +5,7 @@
 #include "base/timer.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +18,8 @@ using Json = nlohmann::ordered_json;
 /// Where the terms that small kinematics leave out are more than this part of the largest strain, strains are off by as
 /// much. A choice: what is usual as accuracy of a stress analysis.
 constexpr double most_neglected = 0.05;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 Json cost(double seconds, const BudgetInput& input) {
   return {{"seconds", seconds}, {"share_of_time", seconds / std::max(input.wall_seconds, 1e-12)}};
@@ -74,17 +77,22 @@ DiscretizationError estimate_mesh_error(Scene& scene, Vec unknowns, std::span<co
   return estimate_discretization_error(*scene.bulk, scene.mesh, state, edge);
 }
 
-std::optional<double> unsolved_part(Scene& scene, IncrementSolver& solver) {
-  if (!scene.bulk->tangent_is_constant() || !scene.problem->tangent_is_symmetric()) return {};
-  const Phase phase("error estimate");
-  VecHandle residual = scene.layout->new_vector(), correction = scene.layout->new_vector();
-  if (!scene.problem->residual(solver.accepted(), residual)) return {};
-  if (!solver.solve_linearized(residual, correction)) return {};
-  PetscScalar work = 0.0;
-  AMT_PETSC(VecDot(residual, correction, &work));
+UnsolvedPart estimate_unsolved_part(Scene& scene, IncrementSolver& solver) {
+  UnsolvedPart part;
+  if (!scene.bulk->tangent_is_constant() || !scene.problem->tangent_is_symmetric()) return part;
+  const Phase phase("algebra error");
+  const double begun = now();
+  const VecHandle residual = scene.layout->new_vector(), correction = scene.layout->new_vector();
+  const bool is_solved =
+      scene.problem->residual(solver.accepted(), residual) && solver.solve_linearized(residual, correction);
   const double all = scene.internal_work(solver.accepted());
-  if (all <= 0.0) return {};
-  return std::sqrt(std::abs(work) / all);
+  if (is_solved && all > 0.0) {
+    PetscScalar work = 0.0;
+    AMT_PETSC(VecDot(residual, correction, &work));
+    part.relative = std::sqrt(std::abs(work) / all);
+  }
+  part.seconds = now() - begun;
+  return part;
 }
 
 Json error_budget(const BudgetInput& input) {
@@ -95,10 +103,11 @@ Json error_budget(const BudgetInput& input) {
       {"constraint", constraint(input)},
       {"algebra",
        {{"relative", input.largest_residual},
-        {"energy_norm", input.unsolved ? Json(*input.unsolved) : Json()},
+        {"energy_norm", input.unsolved.relative ? Json(*input.unsolved.relative) : Json()},
         {"meaning", "relative: largest out-of-balance force that the solver has left in an increment, over the forces "
                     "that are balanced; energy_norm: distance of the last state from the exact solution of its "
-                    "discrete equations, over that of the solution (null: not for this formulation)"}}}};
+                    "discrete equations, over that of the solution (null: not for this formulation)"},
+        {"cost", cost(input.unsolved.seconds, input)}}}};
 }
 
 std::string budget_sentence(const Json& budget) {

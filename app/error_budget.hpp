@@ -20,11 +20,16 @@ namespace amontons {
 /// Collective.
 DiscretizationError estimate_mesh_error(Scene& scene, Vec unknowns, std::span<const ContactSamples> samples);
 
-/// What the tolerances of the solvers have left in the last accepted state: its distance from the exact solution of the
-/// discrete equations in the energy norm, sqrt(r · K⁻¹ r), over that of the solution. One more solve with the tangent;
-/// absent where there is none at hand (see IncrementSolver::solve_linearized), with friction, and where the solid is
-/// not linear elastic. Collective.
-std::optional<double> unsolved_part(Scene& scene, IncrementSolver& solver);
+/// What the tolerances of the solvers have left in the last accepted state.
+struct UnsolvedPart {
+  /// Distance from the exact solution of the discrete equations in the energy norm, sqrt(r · K⁻¹ r), over that of the
+  /// solution. Absent where there is no linear system at hand (see IncrementSolver::solve_linearized), with friction,
+  /// and where the solid is not linear elastic.
+  std::optional<double> relative;
+  double seconds = 0.0;
+};
+/// Takes one more solve with the tangent. Collective.
+UnsolvedPart estimate_unsolved_part(Scene& scene, IncrementSolver& solver);
 
 /// The last accepted state, and what the run has gathered on its way there.
 struct BudgetInput {
@@ -33,9 +38,9 @@ struct BudgetInput {
   const DiscretizationError& mesh_error;
   const FigureErrors& figures;
   const CertificateRecord& certificate;
-  const PathRecord* path;         // null: not measured
-  double largest_residual;        // of all accepted increments, relative to the force scale
-  std::optional<double> unsolved; // see unsolved_part
+  const PathRecord* path;  // null: not measured
+  double largest_residual; // of all accepted increments, relative to the force scale
+  UnsolvedPart unsolved;
   double wall_seconds;
 };
 

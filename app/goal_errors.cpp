@@ -197,7 +197,7 @@ FigureInfluences influences_on_figures(Scene& scene, IncrementSolver& solver, st
   FigureInfluences found;
   found.reason = reason_against(scene);
   if (!found.reason.empty()) return found;
-  const Phase phase("error estimate");
+  const Phase phase("figure errors");
   const double begun = now();
   for (std::size_t i = 0; i < scene.contacts.size() && found.reason.empty(); ++i) {
     const auto& pair = scene.contacts[i]->pair();
@@ -220,7 +220,7 @@ FigureInfluences influences_on_figures(Scene& scene, IncrementSolver& solver, st
 FigureErrors estimate_figure_errors(Scene& scene, Vec unknowns, FigureInfluences found) {
   FigureErrors errors{.figures = {}, .reason = std::move(found.reason), .seconds = found.seconds};
   if (found.figures.empty()) return errors;
-  const Phase phase("error estimate");
+  const Phase phase("figure errors");
   const double begun = now();
   std::vector<std::vector<double>> influences;
   for (auto& figure : found.figures)

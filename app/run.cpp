@@ -445,7 +445,7 @@ void Run::judge_accuracy(int status, nlohmann::ordered_json& summary) {
   const bool at_end = status == status_certified || status == status_not_certified;
   auto influences = at_end ? influences_on_figures(*scene_, *solver_, *last_samples_)
                            : FigureInfluences{.figures = {}, .reason = "the run did not come to its end"};
-  const auto unsolved = at_end ? unsolved_part(*scene_, *solver_) : std::nullopt;
+  const auto unsolved = at_end ? estimate_unsolved_part(*scene_, *solver_) : UnsolvedPart{};
   solver_->end(); // before estimates, which need memory of their own
   const auto mesh_error = estimate_mesh_error(*scene_, solver_->accepted(), *last_samples_);
   const auto figures = estimate_figure_errors(*scene_, solver_->accepted(), std::move(influences));
