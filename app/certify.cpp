@@ -108,10 +108,13 @@ nlohmann::ordered_json CertificateRecord::to_json() const {
 
 std::vector<std::string> CertificateRecord::failures() const {
   std::vector<std::string> lines;
-  for (const auto& [item, time] : worst_)
-    if (!item.passed)
-      lines.push_back(formatted("%s is %.3g at t = %g, allowed %.3g%s%s", item.name.c_str(), item.value, time,
-                                item.tolerance, item.where.empty() ? "" : ": ", item.where.c_str()));
+  for (const auto& [item, time] : worst_) {
+    if (item.passed) continue;
+    lines.push_back(formatted("%s is %.3g at t = %g, allowed %.3g%s%s", item.name.c_str(), item.value, time,
+                              item.tolerance, item.where.empty() ? "" : ": ", item.where.c_str()));
+    if (item.name == "complementarity" || item.name == "penetration")
+      lines.back() += ". Facets that are too large for the shapes and edges there do that: make both sides' smaller.";
+  }
   return lines;
 }
 

@@ -25,20 +25,6 @@ struct Case {
   Enforcement enforcement = CondensedSemismooth{};
 };
 
-/// The upper block's bottom is round (or its middle, in 3D, along both directions).
-Mesh round_on_flat(int dim, int n) {
-  auto raw = two_blocks(PETSC_COMM_WORLD, dim, n, n + n / 2, 0.0);
-  for (std::size_t i = 0; i + 2 < raw.coordinates.size(); i += 3) {
-    double* x = &raw.coordinates[i];
-    const double height = x[dim - 1] - 1.0;
-    const bool is_upper = i / 3 >= raw.coordinates.size() / 3 - std::size_t(std::pow(n + n / 2 + 1, dim));
-    if (!is_upper) continue;
-    const double r2 = std::pow(x[0] - 0.45, 2) + (dim == 3 ? std::pow(x[1] - 0.5, 2) : 0.0);
-    x[dim - 1] += 0.3 * r2 * (1.0 - height);
-  }
-  return distribute_mesh(PETSC_COMM_WORLD, raw, {{"upper_bottom", "lower_top"}}, 0);
-}
-
 /// The upper block is pressed down by 0.03 until t = 1 and then drawn along by 0.04 (t - 1).
 struct Fixture {
   Mesh mesh;
