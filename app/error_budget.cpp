@@ -3,9 +3,9 @@
 #include "accuracy/kinematics_audit.hpp"
 #include "base/log.hpp"
 #include "base/timer.hpp"
+#include "wall_clock.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -18,8 +18,6 @@ using Json = nlohmann::ordered_json;
 /// Where the terms that small kinematics leave out are more than this part of the largest strain, strains are off by as
 /// much. A choice: what is usual as accuracy of a stress analysis.
 constexpr double most_neglected = 0.05;
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 Json cost(double seconds, const BudgetInput& input) {
   return {{"seconds", seconds}, {"share_of_time", seconds / std::max(input.wall_seconds, 1e-12)}};

@@ -11,9 +11,9 @@
 #include "accuracy/goal_error.hpp"
 #include "base/timer.hpp"
 #include "math/reference_element.hpp"
+#include "wall_clock.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -28,8 +28,6 @@ constexpr std::size_t most_pairs = 8;
 const char* const mean_displacements = "mean_displacement";
 
 using Direction = std::array<double, 3>;
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string reason_against(const Scene& scene) {
   if (scene.contacts.empty() && scene.deck.figures.empty()) return "no contact, and the deck names no figures";

@@ -20,9 +20,9 @@
 #include "solution_census.hpp"
 #include "solve/path_control.hpp"
 #include "solve/step_control.hpp"
+#include "wall_clock.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -32,8 +32,6 @@ namespace amontons {
 namespace {
 
 constexpr int status_certified = 0, status_not_converged = 3, status_not_certified = 4, status_interrupted = 5;
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// One run: owns the solver and the writers, marches through the steps.
 class Run {
