@@ -251,7 +251,8 @@ void complete_strain(const Elastic& elastic, std::span<double> strain) {
 } // namespace
 
 BulkForm::BulkForm(const DofLayout& layout, Space space, std::vector<SmallLaw> laws, std::vector<BodyLoad> body_loads)
-    : layout_(layout), space_(space), laws_(std::move(laws)), body_loads_(std::move(body_loads)) {
+    : SolidForm(virgin_states(layout.mesh(), space, laws)), layout_(layout), space_(space), laws_(std::move(laws)),
+      body_loads_(std::move(body_loads)) {
   for (const auto& law : laws_) {
     const auto* elastic = std::get_if<Elastic>(&law);
     if (!elastic && space_ == Space::PlaneStress)
@@ -261,7 +262,6 @@ BulkForm::BulkForm(const DofLayout& layout, Space space, std::vector<SmallLaw> l
     moduli_.push_back(moduli);
   }
   check_cells(layout_.mesh(), space_);
-  states_ = virgin_states(layout_.mesh(), space_, laws_);
 }
 
 template <class Work>
@@ -314,20 +314,17 @@ bool BulkForm::tangent_is_constant() const {
   return std::all_of(moduli_.begin(), moduli_.end(), [](const auto& moduli) { return moduli.linear.has_value(); });
 }
 
-void BulkForm::commit(const State& state) {
-  PointStates next = states_;
-  next.time = state.time;
+void BulkForm::for_each_new_states(const State& state, const std::function<void(const NewPointStates&)>& visit) {
+  std::vector<double> weights;
   each_block(state, [&](auto kernel, const Material& material, std::size_t b) {
     using Kernel = decltype(kernel);
     if (!material.accepted.has_memory()) return;
     each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
-      next.blocks[b].accept(batch.first_point(), batch.states, batch.dissipated);
+      find_weights(batch, weights);
+      visit({b, batch.first_point(), weights, batch.states, batch.dissipated});
     });
   });
-  states_ = std::move(next);
 }
-
-std::any BulkForm::history() const { return states_; }
 
 double BulkForm::stored_energy(const State& state) {
   double total = 0;
@@ -347,19 +344,6 @@ double BulkForm::internal_work(const State& state) {
     using Kernel = decltype(kernel);
     each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
       total += work_at_points(batch) + unseen_work(material, batch);
-    });
-  });
-  return total;
-}
-
-double BulkForm::dissipated_energy(const State& state) {
-  double total = 0;
-  each_block(state, [&](auto kernel, const Material& material, std::size_t) {
-    using Kernel = decltype(kernel);
-    if (!material.accepted.has_memory()) return;
-    each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
-      total += weighted(batch, material.accepted.dissipated_at(batch.first_point(), batch.points())) +
-               weighted(batch, batch.dissipated);
     });
   });
   return total;
@@ -396,10 +380,7 @@ void BulkForm::for_each_batch(const State& state, const std::function<void(const
     each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
       strain = batch.strain;
       if (space_ == Space::PlaneStress) complete_strain(std::get<Elastic>(material.law), strain);
-      weights.clear();
-      for (const auto& cell : batch.cells)
-        for (int q = 0; q < cell.size; ++q)
-          weights.push_back(cell.points[q].weight);
+      find_weights(batch, weights);
       scalars.assign(has_scalars ? batch.points() : 0, 0.0);
       for (std::size_t p = 0; p < batch.points() && material.accepted.has_memory(); ++p)
         scalars[p] = batch.states[p * material.accepted.components];

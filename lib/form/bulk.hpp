@@ -30,9 +30,6 @@ class BulkForm : public SolidForm {
   void add_changing_tangent(const State& state, Tangent& tangent) override;
   bool tangent_is_constant() const override;
   bool wants_predictor() const override { return !tangent_is_constant(); }
-  void commit(const State& state) override;
-  std::any history() const override;
-  void restore(const std::any& history) override { states_ = std::any_cast<const PointStates&>(history); }
   double stored_energy(const State& state) override;
 
   Space space() const override { return space_; }
@@ -42,12 +39,10 @@ class BulkForm : public SolidForm {
   /// With plasticity the accumulated plastic strain.
   std::vector<std::string> scalar_names() const override;
   double internal_work(const State& state) override;
-  double dissipated_energy(const State& state) override;
   LoadedBubbles loaded_bubbles(const State& state) override;
-  const PointStates& point_states() const override { return states_; }
-  void restore_points(PointStates states) override { states_ = std::move(states); }
 
  private:
+  void for_each_new_states(const State& state, const std::function<void(const NewPointStates&)>& visit) override;
   struct BodyModuli {
     double young;
     std::optional<Lame> linear; // the constants of a linear elastic body in this space
@@ -63,7 +58,6 @@ class BulkForm : public SolidForm {
   std::vector<BodyLoad> body_loads_;
   std::vector<std::vector<double>> bubble_forces_; // block by block, dim a cell; empty: none
   std::optional<double> bubble_forces_time_;
-  PointStates states_;
 };
 
 } // namespace amontons

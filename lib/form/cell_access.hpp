@@ -66,6 +66,15 @@ PointStates virgin_states(const Mesh& mesh, Space space, const std::vector<Law>&
   return result;
 }
 
+/// The weights of the points of a batch, in `weights`.
+template <class Batch>
+void find_weights(const Batch& batch, std::vector<double>& weights) {
+  weights.clear();
+  for (const auto& cell : batch.cells)
+    for (int q = 0; q < cell.size; ++q)
+      weights.push_back(cell.points[q].weight);
+}
+
 /// Σ w density over a batch.
 template <class Batch>
 double weighted(const Batch& batch, std::span<const double> density) {

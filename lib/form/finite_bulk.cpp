@@ -129,13 +129,10 @@ struct SpatialFields {
 template <class Kernel>
 void find_spatial_fields(const Batch<Kernel>& batch, int state_components, std::size_t scalars, SpatialFields& fields) {
   constexpr int components = Kernel::components;
-  fields.weights.clear();
+  find_weights(batch, fields.weights);
   fields.scalars.assign(batch.points() * scalars, 0.0);
   fields.strain.resize(batch.points() * components);
   fields.stress.resize(fields.strain.size());
-  for (const auto& cell : batch.cells)
-    for (int q = 0; q < cell.size; ++q)
-      fields.weights.push_back(cell.points[q].weight);
   for (std::size_t p = 0; p < batch.points(); ++p) {
     double* const scalar = &fields.scalars[p * scalars];
     scalar[0] = spatial<components>(&batch.F[9 * p], &batch.piola[9 * p], &fields.strain[p * components],
@@ -147,10 +144,9 @@ void find_spatial_fields(const Batch<Kernel>& batch, int state_components, std::
 } // namespace
 
 FiniteBulkForm::FiniteBulkForm(const DofLayout& layout, Space space, std::vector<FiniteLaw> laws)
-    : layout_(layout), space_(space), laws_(std::move(laws)) {
+    : SolidForm(virgin_states(layout.mesh(), space, laws)), layout_(layout), space_(space), laws_(std::move(laws)) {
   if (space == Space::PlaneStress) throw std::invalid_argument("FiniteBulkForm: there is no plane stress");
   check_cells(layout_.mesh(), space_);
-  states_ = virgin_states(layout_.mesh(), space_, laws_);
 }
 
 template <class Work>
@@ -188,17 +184,16 @@ bool FiniteBulkForm::tangent_is_symmetric() const {
   return std::all_of(laws_.begin(), laws_.end(), [](const auto& law) { return has_symmetric_tangent(law); });
 }
 
-void FiniteBulkForm::commit(const State& state) {
-  PointStates next = states_;
-  next.time = state.time;
+void FiniteBulkForm::for_each_new_states(const State& state, const std::function<void(const NewPointStates&)>& visit) {
+  std::vector<double> weights;
   each_block(state, [&](auto kernel, const Material& material, std::size_t b) {
     using Kernel = decltype(kernel);
     if (!material.accepted.has_memory()) return;
     each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
-      next.blocks[b].accept(batch.first_point(), batch.states, batch.dissipated);
+      find_weights(batch, weights);
+      visit({b, batch.first_point(), weights, batch.states, batch.dissipated});
     });
   });
-  states_ = std::move(next);
 }
 
 double FiniteBulkForm::stored_energy(const State& state) {
@@ -207,19 +202,6 @@ double FiniteBulkForm::stored_energy(const State& state) {
     using Kernel = decltype(kernel);
     each_batch<Kernel>(material, state.displacement,
                        [&](const Batch<Kernel>& batch) { total += weighted(batch, batch.stored); });
-  });
-  return total;
-}
-
-double FiniteBulkForm::dissipated_energy(const State& state) {
-  double total = 0;
-  each_block(state, [&](auto kernel, const Material& material, std::size_t) {
-    using Kernel = decltype(kernel);
-    if (!material.accepted.has_memory()) return;
-    each_batch<Kernel>(material, state.displacement, [&](const Batch<Kernel>& batch) {
-      total += weighted(batch, material.accepted.dissipated_at(batch.first_point(), batch.points())) +
-               weighted(batch, batch.dissipated);
-    });
   });
   return total;
 }

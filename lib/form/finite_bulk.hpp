@@ -22,9 +22,6 @@ class FiniteBulkForm : public SolidForm {
   void add_tangent(const State& state, Tangent& tangent) override;
   bool tangent_is_symmetric() const override;
   bool wants_predictor() const override { return true; }
-  void commit(const State& state) override;
-  std::any history() const override { return states_; }
-  void restore(const std::any& history) override { states_ = std::any_cast<const PointStates&>(history); }
   double stored_energy(const State& state) override;
 
   Space space() const override { return space_; }
@@ -33,11 +30,9 @@ class FiniteBulkForm : public SolidForm {
   /// The volume ratio det F̄, and with plasticity the accumulated plastic strain.
   std::vector<std::string> scalar_names() const override;
   double internal_work(const State& state) override;
-  double dissipated_energy(const State& state) override;
-  const PointStates& point_states() const override { return states_; }
-  void restore_points(PointStates states) override { states_ = std::move(states); }
 
  private:
+  void for_each_new_states(const State& state, const std::function<void(const NewPointStates&)>& visit) override;
   /// Calls work(kernel, block with all that belongs to it) for each block of cells.
   template <class Work>
   void each_block(const State& state, Work&& work);
@@ -45,7 +40,6 @@ class FiniteBulkForm : public SolidForm {
   const DofLayout& layout_;
   Space space_;
   std::vector<FiniteLaw> laws_;
-  PointStates states_;
 };
 
 } // namespace amontons

@@ -86,6 +86,25 @@ void check_block(const Mesh& mesh, const CellBlock& block, Space space) {
 
 } // namespace
 
+double SolidForm::dissipated_energy(const State& state) {
+  double total = 0;
+  for_each_new_states(state, [&](const NewPointStates& next) {
+    const auto before = states_.blocks[next.block].dissipated_at(next.first_point, next.weights.size());
+    for (std::size_t p = 0; p < next.weights.size(); ++p)
+      total += next.weights[p] * (before[p] + next.dissipated[p]);
+  });
+  return total;
+}
+
+void SolidForm::commit(const State& state) {
+  PointStates accepted = states_;
+  accepted.time = state.time;
+  for_each_new_states(state, [&](const NewPointStates& next) {
+    accepted.blocks[next.block].accept(next.first_point, next.states, next.dissipated);
+  });
+  states_ = std::move(accepted);
+}
+
 void check_cells(const Mesh& mesh, Space space) {
   together(mesh.comm, [&] {
     for (const auto& block : mesh.blocks)

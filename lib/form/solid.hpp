@@ -39,7 +39,13 @@ struct LoadedBubbles {
   std::vector<double> forces, displacements;
 };
 
-/// All cells of a mesh, with a law a body. None of the members is collective.
+/// What the laws make of the points of some consecutive cells of a block in the increment in progress. Point by point.
+struct NewPointStates {
+  std::size_t block, first_point; // number in Mesh::blocks, in the block
+  std::span<const double> weights, states, dissipated;
+};
+
+/// All cells of a mesh, with a law a body, and what their points remember. None of the members is collective.
 class SolidForm : public Form {
  public:
   const char* name() const override { return "bulk"; }
@@ -58,12 +64,23 @@ class SolidForm : public Form {
   virtual double internal_work(const State& state) = 0;
   /// Energy that the material has turned into heat since the start, on this rank; rises also with the increment in
   /// progress.
-  virtual double dissipated_energy(const State&) { return 0.0; }
+  double dissipated_energy(const State& state);
   virtual LoadedBubbles loaded_bubbles(const State&) { return {}; }
 
   /// The memory of the material as last accepted, for checkpoints.
-  virtual const PointStates& point_states() const = 0;
-  virtual void restore_points(PointStates states) = 0;
+  const PointStates& point_states() const { return states_; }
+  void restore_points(PointStates states) { states_ = std::move(states); }
+
+  void commit(const State& state) override;
+  std::any history() const override { return states_; }
+  void restore(const std::any& history) override { states_ = std::any_cast<const PointStates&>(history); }
+
+ protected:
+  explicit SolidForm(PointStates states) : states_(std::move(states)) {}
+  /// Visits the points of all blocks whose law has a memory, up to the first batch of a block without an answer.
+  virtual void for_each_new_states(const State& state, const std::function<void(const NewPointStates&)>& visit) = 0;
+
+  PointStates states_; // as last accepted
 };
 
 /// Nodal averages by the lumped L2 projection σ_a = ∫ N_a σ / ∫ N_a over the cells around a corner node, with the
