@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace amontons {
 
@@ -57,13 +58,46 @@ double surface_diagonal(const Mesh& mesh, const std::string& name) {
   return box.diagonal();
 }
 
-/// Does the surface belong to a body for which `flags` is set? Collective.
-bool on_flagged_body(const Mesh& mesh, const std::string& surface, const std::vector<std::uint8_t>& flags) {
-  int any = 0;
-  for (const auto body : mesh.surfaces.at(surface).bodies)
-    any = any || flags[body];
-  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, mesh.comm);
-  return any != 0;
+/// Which bodies a pair is about. Collective.
+std::vector<int> bodies_of(const Mesh& mesh, const ContactPair& pair) {
+  std::vector<int> flags(mesh.bodies.size(), 0);
+  const auto add = [&](const std::string& surface) {
+    for (const auto body : mesh.surfaces.at(surface).bodies)
+      flags[body] = 1;
+  };
+  add(pair.slave);
+  if (const auto* master = std::get_if<std::string>(&pair.master)) add(*master);
+  MPI_Allreduce(MPI_IN_PLACE, flags.data(), static_cast<int>(flags.size()), MPI_INT, MPI_MAX, mesh.comm);
+  return flags;
+}
+
+/// How near the surfaces of a pair are at the start, in facet sizes. Collective.
+double nearest_gap(const Mesh& mesh, const ContactPoints& points) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& point : points.points())
+    if (point.master != ContactPoint::none) nearest = std::min(nearest, point.gap0 / point.size);
+  MPI_Allreduce(MPI_IN_PLACE, &nearest, 1, MPI_DOUBLE, MPI_MIN, mesh.comm);
+  return nearest;
+}
+
+/// Tells the pairs that hold a floating body. One that touches something at the start is held by that: what is open is
+/// not guessed to be closed, which would throw the first iterate as far as it is open. Collective.
+void find_holders(const Mesh& mesh, const std::vector<std::uint8_t>& floating,
+                  const std::vector<PairReport*>& contacts) {
+  std::vector<std::vector<int>> bodies;
+  std::vector<double> gaps, nearest(mesh.bodies.size(), std::numeric_limits<double>::infinity());
+  for (const auto* contact : contacts) {
+    bodies.push_back(bodies_of(mesh, contact->pair()));
+    gaps.push_back(nearest_gap(mesh, contact->points()));
+    for (std::size_t b = 0; b < nearest.size(); ++b)
+      if (bodies.back()[b]) nearest[b] = std::min(nearest[b], gaps.back());
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    bool holds = false;
+    for (std::size_t b = 0; b < nearest.size(); ++b)
+      holds = holds || (bodies[i][b] && floating[b] && (gaps[i] <= guess_reach || nearest[b] > guess_reach));
+    contacts[i]->hold_floating_body(holds);
+  }
 }
 
 std::array<double, 3> padded(const std::vector<double>& values) {
@@ -107,7 +141,7 @@ std::variant<std::string, RigidMaster> make_master(const MasterDeck& master) {
 
 /// The contact pairs, with an extra field of unknowns for each that wants one.
 std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const std::vector<double>& stiffness,
-                                    const std::vector<std::uint8_t>& floating, std::vector<NodeField>& fields) {
+                                    std::vector<NodeField>& fields) {
   std::vector<ContactPair> pairs;
   for (const auto& declared : deck.contact) {
     ContactPair pair{.name = declared.name.value,
@@ -149,10 +183,8 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
                             pair.integration = SegmentIntegration{segment.order};
                           }},
                declared.integration);
-    pair.holds_floating_body = on_flagged_body(mesh, pair.slave, floating);
     pair.search_distance = declared.search_distance.value_or(0.1 * surface_diagonal(mesh, pair.slave));
     if (const auto* master = std::get_if<std::string>(&pair.master)) {
-      pair.holds_floating_body = on_flagged_body(mesh, *master, floating) || pair.holds_floating_body;
       if (!declared.search_distance)
         pair.search_distance = std::min(pair.search_distance, 0.1 * surface_diagonal(mesh, *master));
     }
@@ -277,7 +309,7 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path, 
     if (floating[b]) scene->floating.push_back(mesh.bodies[b]);
   }
   std::vector<NodeField> fields;
-  auto pairs = make_pairs(deck, mesh, stiffness, floating, fields);
+  auto pairs = make_pairs(deck, mesh, stiffness, fields);
   scene->layout = std::make_unique<DofLayout>(mesh, conditions.tied, fields);
   const auto& layout = *scene->layout;
 
@@ -321,6 +353,7 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path, 
     forms.push_back(std::move(form));
   }
   check_masters(deck, mesh.comm, scene->contacts);
+  if (!scene->floating.empty()) find_holders(mesh, floating, scene->contacts);
   if (!uzawa.empty()) scene->multipliers = std::make_unique<UzawaMultipliers>(mesh, uzawa);
   scene->problem = std::make_unique<Problem>(layout, std::move(forms), std::move(conditions.prescribed));
   if (!bounded.empty()) scene->bounds = std::make_unique<MortarTransform>(*scene->problem, std::move(bounded));

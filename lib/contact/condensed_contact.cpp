@@ -30,9 +30,6 @@ namespace amontons {
 
 namespace {
 
-/// Surfaces that start closer than this part of a facet size are guessed to be in contact.
-constexpr double guess_reach = 1e-2;
-
 double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -133,10 +130,10 @@ void CondensedContact::find_tangential_part(Node& node, const VecReader& changed
     const auto axis = frame.axis(c);
     add(node.trial, -forces[node.first + c] / constraint.weight + constraint.epsilon * dot(axis, motion), axis);
   }
-  if (evaluation == Evaluation::FirstGuess)
-    node.response = {.traction = node.trial, .dtraction_dq = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}}};
-  else
-    node.response = friction.respond(node.place, node.trial, -normal_traction(node.augmented), constraint.epsilon);
+  const double pressure = -normal_traction(node.augmented);
+  node.response = evaluation == Evaluation::FirstGuess
+                      ? friction.guess(node.place, node.trial, pressure, constraint.epsilon)
+                      : friction.respond(node.place, node.trial, pressure, constraint.epsilon);
 }
 
 void CondensedContact::set_residual(const Node& node, Vec residual) const {

@@ -24,8 +24,6 @@ namespace {
 
 /// Points whose gap is below this many facet sizes get a place in the matrix before they touch.
 constexpr double coupling_reach = 1.5;
-/// Surfaces that start closer than this part of a facet size are guessed to be in contact.
-constexpr double guess_reach = 1e-2;
 
 bool any_of_all(MPI_Comm comm, bool mine) {
   int any = mine ? 1 : 0;

@@ -59,6 +59,7 @@ class ContactForm : public Form, public PairReport, public Switching {
   void scale_augmentation(double factor) override;
 
   const ContactPair& pair() const override { return pair_; }
+  void hold_floating_body(bool holds) override { pair_.holds_floating_body = holds; }
   const NodeField& nodes() const override { return nodes_; }
   const ContactPoints& points() const override { return points_; }
 
@@ -116,7 +117,7 @@ class ContactForm : public Form, public PairReport, public Switching {
   std::optional<TurningForces> turning_forces(std::size_t i) const;
   void add_turning_forces(const Group& group, Residual& residual) const;
   double work_of_turning(const State& state) const;
-  void add_tangent_now(bool guess_stick, Tangent& tangent) const;
+  void add_tangent_now(bool first_guess, Tangent& tangent) const;
   /// A group's part of the tangent, row-major. Equations of the old master facet stand behind all others.
   struct DenseBlock {
     std::vector<PetscInt> equations;
@@ -124,9 +125,9 @@ class ContactForm : public Form, public PairReport, public Switching {
     std::ptrdiff_t old_master = -1;
     std::vector<double> values;
   };
-  void add_point_now(std::size_t i, const Group& group, bool guess_stick, DenseBlock& block) const;
+  void add_point_now(std::size_t i, const Group& group, bool first_guess, DenseBlock& block) const;
   ScalarDerivative stretch_at(std::size_t i) const;
-  PointTangent tangent_at(std::size_t i, bool guess_stick) const;
+  PointTangent tangent_at(std::size_t i, bool first_guess) const;
   std::vector<PetscInt> master_equations(std::int32_t facet) const;
   std::vector<double> nodal_pressure();
 

@@ -8,7 +8,7 @@ void PointHistory::append_to(std::vector<double>& row) const {
   row.insert(row.end(), traction.begin(), traction.end());
   row.insert(row.end(), jump.begin(), jump.end());
   row.insert(row.end(), state.begin(), state.end());
-  row.insert(row.end(), {slip, open ? 1.0 : 0.0});
+  row.insert(row.end(), {slip, open ? 1.0 : 0.0, slip_rate});
 }
 
 PointHistory PointHistory::from_row(std::span<const double> row) {
@@ -18,6 +18,7 @@ PointHistory PointHistory::from_row(std::span<const double> row) {
   std::copy_n(row.begin() + 6, 2, point.state.begin());
   point.slip = row[8];
   point.open = row[9] != 0.0;
+  point.slip_rate = row[10];
   return point;
 }
 

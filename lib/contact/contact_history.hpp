@@ -18,10 +18,11 @@ struct PointHistory {
   std::array<double, 3> jump{}; // u_slave − u_master − rigid shift, length
   FrictionState state{};        // of the law
   double slip = 0.0;            // accumulated over all contacts of the point, length
+  double slip_rate = 0.0;       // in the last increment, length / time
   bool open = true;
 
   /// As a row of numbers, and back.
-  static constexpr int row_size = 10;
+  static constexpr int row_size = 11;
   void append_to(std::vector<double>& row) const;
   static PointHistory from_row(std::span<const double> row);
 };

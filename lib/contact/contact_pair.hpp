@@ -74,8 +74,8 @@ struct ContactPair {
   double alpha = 1.0;           // dimensionless augmentation: ε = alpha · stiffness / h
   double search_distance = 0.0; // farther master facets are not looked at
   Space space = Space::Solid;
-  /// A body of this pair is held by contact alone: then contact is guessed where the surfaces are nearest when nothing
-  /// touches yet.
+  /// A body of this pair is held by contact alone, and touches nothing at the start: then contact is guessed where the
+  /// surfaces are nearest, however far that is.
   bool holds_floating_body = false;
   std::vector<double> stiffness; // Young's modulus per body of the mesh
   std::optional<Friction> friction = std::nullopt;

@@ -17,6 +17,9 @@
 
 namespace amontons {
 
+/// Surfaces that are closer than this part of a facet size are guessed to be in contact where nothing is known yet.
+constexpr double guess_reach = 1e-2;
+
 /// A quadrature point of the slave surface.
 struct ContactPoint {
   std::int32_t facet;            // of the slave FacetSet

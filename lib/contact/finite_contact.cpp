@@ -181,7 +181,7 @@ double ContactForm::work_of_turning(const State& state) const {
 }
 
 /// Tractions, forces and their derivatives at a point in contact.
-PointTangent ContactForm::tangent_at(std::size_t i, bool guess_stick) const {
+PointTangent ContactForm::tangent_at(std::size_t i, bool first_guess) const {
   namespace at = contact_slot;
   namespace column = point_column;
   const auto& point = points_.points()[i];
@@ -211,15 +211,12 @@ PointTangent ContactForm::tangent_at(std::size_t i, bool guess_stick) const {
   VectorDerivative dq = VectorDerivative::Zero();
   dq.leftCols<at::count>() = tangential_variation(trial, dtrial, normal, kinematics.normal);
   dq.middleCols<3>(column::lambda_t) = Eigen::Matrix3d::Identity() - normal * normal.transpose();
-  if (guess_stick) {
-    tractions.dshear = dq;
-    return point_tangent(tractions, kinematics);
-  }
+  const auto derivative = first_guess ? tangential_->guess(i) : response;
   Eigen::Matrix3d by_trial;
   for (int r = 0; r < 3; ++r)
-    by_trial.row(r) = vector(response.dtraction_dq[r]).transpose();
+    by_trial.row(r) = vector(derivative.dtraction_dq[r]).transpose();
   tractions.dshear = by_trial * dq;
-  if (tangential_->is_pressed(i)) tractions.dshear -= vector(response.dtraction_dp) * tractions.dsigma;
+  if (tangential_->is_pressed(i)) tractions.dshear -= vector(derivative.dtraction_dp) * tractions.dsigma;
   return point_tangent(tractions, kinematics);
 }
 
@@ -232,7 +229,7 @@ ScalarDerivative ContactForm::stretch_at(std::size_t i) const {
   return stretch;
 }
 
-void ContactForm::add_tangent_now(bool guess_stick, Tangent& tangent) const {
+void ContactForm::add_tangent_now(bool first_guess, Tangent& tangent) const {
   for (const auto& group : groups()) {
     const bool any_active =
         std::any_of(active_.begin() + static_cast<std::ptrdiff_t>(group.begin),
@@ -257,12 +254,12 @@ void ContactForm::add_tangent_now(bool guess_stick, Tangent& tangent) const {
     block.parts.size = block.equations.size();
     block.values.assign(block.parts.size * block.parts.size, 0.0);
     for (std::size_t i = group.begin; i < group.end; ++i)
-      add_point_now(i, group, guess_stick, block);
+      add_point_now(i, group, first_guess, block);
     tangent.add(block.equations, block.values);
   }
 }
 
-void ContactForm::add_point_now(std::size_t i, const Group& group, bool guess_stick, DenseBlock& block) const {
+void ContactForm::add_point_now(std::size_t i, const Group& group, bool first_guess, DenseBlock& block) const {
   if (!active_[i] && !is_unknown()) return;
   const int d = layout_.dim();
   const auto& point = points_.points()[i];
@@ -270,7 +267,7 @@ void ContactForm::add_point_now(std::size_t i, const Group& group, bool guess_st
       {shape_table(points_.slave().types[point.facet], points_.xi(point)), 0, of_slave, of_slave}};
   PointTangent derivatives;
   if (active_[i]) {
-    derivatives = tangent_at(i, guess_stick);
+    derivatives = tangent_at(i, first_guess);
     const auto* master = points_.master();
     if (group.master >= 0)
       parts.push_back({shape_table(master->type(group.master), points_.now(i).xi), block.parts.master, of_master_rows,

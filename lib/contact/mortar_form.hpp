@@ -34,6 +34,7 @@ class MortarForm : public Form, public PairReport {
   void restore(const ContactHistory& history) override;
 
   const ContactPair& pair() const override { return pair_; }
+  void hold_floating_body(bool holds) override { pair_.holds_floating_body = holds; }
   /// All nodes of the slave surface that this rank knows; for order 2 the controls that go with them.
   const NodeField& nodes() const override { return nodes_; }
   const std::vector<double>& multipliers() const override { return multipliers_; }

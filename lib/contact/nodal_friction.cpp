@@ -51,6 +51,11 @@ FrictionResponse NodalFriction::respond(std::size_t i, const TangentVector& q, d
   return return_map(pair_.friction->law, context(i), q, p, epsilon, history_[i].state);
 }
 
+FrictionResponse NodalFriction::guess(std::size_t i, const TangentVector& q, double p, double epsilon) const {
+  const auto now = context(i);
+  return guess_response(pair_.friction->law, now, q, p, epsilon, history_[i].state, history_[i].slip_rate * now.dt);
+}
+
 std::array<double, 3> NodalFriction::motion(std::size_t i, const std::array<double, 3>& jump) const {
   const auto& old = history_[i].jump;
   return {jump[0] - old[0], jump[1] - old[1], jump[2] - old[2]};
@@ -75,16 +80,24 @@ ContactStatus NodalFriction::status(std::size_t i) const {
 }
 
 void NodalFriction::commit(double time) {
+  const double duration = time - accepted_time_;
   for (std::size_t i = 0; i < history_.size(); ++i)
     history_[i] = {.traction = responses_[i].traction,
                    .jump = jump_[i],
                    .state = responses_[i].state,
                    .slip = history_[i].slip + responses_[i].slip,
+                   .slip_rate = duration > 0.0 ? responses_[i].slip / duration : 0.0,
                    .open = closed_[i] == 0};
   accepted_time_ = time;
 }
 
 void NodalFriction::roll_back() {
+  for (auto& node : history_)
+    node.slip_rate = 0.0; // going on like that has failed
+  resume();
+}
+
+void NodalFriction::resume() {
   for (std::size_t i = 0; i < history_.size(); ++i) {
     responses_[i] = {.traction = history_[i].traction};
     closed_[i] = !history_[i].open;
@@ -100,7 +113,7 @@ void NodalFriction::save(ContactHistory& history) const {
 void NodalFriction::restore(const ContactHistory& history) {
   accepted_time_ = history.time;
   history_ = history.nodes;
-  roll_back();
+  resume();
 }
 
 /// Nothing is stored: a node that sticks does not move.

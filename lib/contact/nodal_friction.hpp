@@ -23,6 +23,8 @@ class NodalFriction {
   void move_to(double time);
   /// What the law makes of a trial traction q (stress, tangential) at pressure p >= 0.
   FrictionResponse respond(std::size_t node, const TangentVector& q, double p, double epsilon) const;
+  /// The same as guessed for the first tangent of an increment (guess_response).
+  FrictionResponse guess(std::size_t node, const TangentVector& q, double p, double epsilon) const;
   /// Motion of a node over the master since the last accepted state; `jump`: u_slave − u_master − rigid shift.
   std::array<double, 3> motion(std::size_t node, const std::array<double, 3>& jump) const;
 
@@ -50,6 +52,7 @@ class NodalFriction {
 
  private:
   FrictionContext context(std::size_t node) const;
+  void resume();
 
   const DofLayout& layout_;
   const ContactPair& pair_;

@@ -46,6 +46,8 @@ class PairReport {
   virtual ~PairReport() = default;
 
   virtual const ContactPair& pair() const = 0;
+  /// See ContactPair::holds_floating_body, which is known when the places of all pairs are.
+  virtual void hold_floating_body(bool holds) = 0;
   /// Where the multipliers live.
   virtual const NodeField& nodes() const = 0;
   /// Multipliers at nodes(), held or as of the last evaluation: traction, <= 0 in contact.

@@ -187,6 +187,11 @@ ContactStatus TangentialPart::status(std::size_t i) const {
   return responses_[i].status == FrictionStatus::Slip ? ContactStatus::Slip : ContactStatus::Stick;
 }
 
+FrictionResponse TangentialPart::guess(std::size_t i) const {
+  return guess_response(pair_.friction->law, contexts_[i], responses_[i].traction, pressure_[i],
+                        points_.points()[i].epsilon, history_[i].state, history_[i].slip_rate * contexts_[i].dt);
+}
+
 // --- assembly --------------------------------------------------------------------------------------------------------
 
 void TangentialPart::gather_multiplier_equations(std::int32_t facet, std::vector<PetscInt>& equations) const {
@@ -234,7 +239,7 @@ void TangentialPart::add_residual(std::size_t begin, std::size_t end, Residual& 
   if (is_unknown()) residual.add(unknowns, on_unknowns);
 }
 
-bool TangentialPart::add_tangent(std::size_t begin, std::size_t end, const ContactBlock& layout, bool guess_stick,
+bool TangentialPart::add_tangent(std::size_t begin, std::size_t end, const ContactBlock& layout, bool first_guess,
                                  std::span<double> block) const {
   const auto& points = points_.points();
   const int d = layout_.dim();
@@ -255,7 +260,7 @@ bool TangentialPart::add_tangent(std::size_t begin, std::size_t end, const Conta
     if (!active_[i]) continue;
     any = true;
     jump_variation(point, layout, motion);
-    trial_tangent(i, layout, guess_stick, motion, response);
+    trial_tangent(i, layout, first_guess, motion, response);
     test = motion;
     if (is_unknown())
       for (std::size_t a = 0; a < shape.size(); ++a)
@@ -289,14 +294,10 @@ void TangentialPart::jump_variation(const ContactPoint& point, const ContactBloc
 }
 
 /// ∂σ_t / ∂(equations), dim x n.
-void TangentialPart::trial_tangent(std::size_t i, const ContactBlock& layout, bool guess_stick,
+void TangentialPart::trial_tangent(std::size_t i, const ContactBlock& layout, bool first_guess,
                                    std::span<const double> motion, std::span<double> response) const {
   const auto& point = points_.points()[i];
-  auto derivative = responses_[i];
-  if (guess_stick) {
-    derivative.dtraction_dq = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-    derivative.dtraction_dp = {};
-  }
+  const auto derivative = first_guess ? guess(i) : responses_[i];
   const int d = layout_.dim();
   const std::size_t n = layout.size;
   std::array<std::array<double, 3>, 3> projected{}; // D P
@@ -332,9 +333,9 @@ bool TangentialPart::tangent_changed() const {
   return false;
 }
 
-void TangentialPart::remember_tangent(bool guess_stick) {
+void TangentialPart::remember_tangent(bool first_guess) {
   for (std::size_t i = 0; i < responses_.size(); ++i)
-    assembled_status_[i] = guess_stick ? unknown_status : static_cast<std::uint8_t>(status(i));
+    assembled_status_[i] = first_guess ? unknown_status : static_cast<std::uint8_t>(status(i));
 }
 
 void TangentialPart::hold_pressure() { held_pressure_ = pressure_; }
@@ -347,6 +348,7 @@ void TangentialPart::commit(const State& state) {
                    .jump = jump_[i],
                    .state = responses_[i].state,
                    .slip = history_[i].slip + responses_[i].slip,
+                   .slip_rate = contexts_[i].dt > 0.0 ? responses_[i].slip / contexts_[i].dt : 0.0,
                    .open = active_[i] == 0};
   multipliers_old_ = multipliers_;
   accepted_time_ = state.time;
@@ -356,7 +358,11 @@ void TangentialPart::remember() {
   if (path_) path_->accept();
 }
 
-void TangentialPart::roll_back() { multipliers_ = multipliers_old_; }
+void TangentialPart::roll_back() {
+  multipliers_ = multipliers_old_;
+  for (auto& point : history_)
+    point.slip_rate = 0.0; // going on like that has failed
+}
 
 void TangentialPart::save(ContactHistory& history) const {
   history.time = accepted_time_;

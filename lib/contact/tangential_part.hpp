@@ -36,6 +36,8 @@ class TangentialPart {
   const FrictionResponse& response(std::size_t i) const { return responses_[i]; }
   const TangentVector& traction(std::size_t i) const { return responses_[i].traction; }
   ContactStatus status(std::size_t i) const;
+  /// The response whose derivatives stand for those of a point in the first tangent of an increment (guess_response).
+  FrictionResponse guess(std::size_t i) const;
   bool is_pressed(std::size_t i) const { return pressed_[i] != 0; }
   /// Finite kinematics: where the points come from. Null in small kinematics.
   const SlipPath* path() const { return path_.get(); }
@@ -47,14 +49,13 @@ class TangentialPart {
 
   /// Forces of points [begin, end), which lie on one slave facet and one master facet.
   void add_residual(std::size_t begin, std::size_t end, Residual& residual) const;
-  /// Their tangent, added to a block; returns whether anything was added. `guess_stick`: that of points which all
-  /// stick.
-  bool add_tangent(std::size_t begin, std::size_t end, const ContactBlock& layout, bool guess_stick,
+  /// Their tangent, added to a block; returns whether anything was added. `first_guess`: that of guess().
+  bool add_tangent(std::size_t begin, std::size_t end, const ContactBlock& layout, bool first_guess,
                    std::span<double> block) const;
   void gather_multiplier_equations(std::int32_t facet, std::vector<PetscInt>& equations) const;
   /// Is the tangent another than when remember_tangent was called?
   bool tangent_changed() const;
-  void remember_tangent(bool guess_stick);
+  void remember_tangent(bool first_guess);
 
   /// From the next evaluation on the law is asked with the pressures of the last one, which then do not vary, until
   /// they are released: friction with a given bound.
@@ -87,7 +88,7 @@ class TangentialPart {
   void fetch_multipliers(const State& state);
   void find_factors(double time);
   void jump_variation(const ContactPoint& point, const ContactBlock& layout, std::span<double> motion) const;
-  void trial_tangent(std::size_t i, const ContactBlock& layout, bool guess_stick, std::span<const double> motion,
+  void trial_tangent(std::size_t i, const ContactBlock& layout, bool first_guess, std::span<const double> motion,
                      std::span<double> response) const;
   double spring_energy(std::size_t i, const TangentVector& traction,
                        const std::vector<std::vector<double>>& multipliers) const;

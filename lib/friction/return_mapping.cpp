@@ -51,4 +51,16 @@ FrictionResponse return_map(const FrictionLaw& law, const FrictionContext& conte
   return response;
 }
 
+FrictionResponse guess_response(const FrictionLaw& law, const FrictionContext& context, const TangentVector& q,
+                                double p, double epsilon, const FrictionState& state_old, double slip) {
+  const double size = std::hypot(q[0], q[1], q[2]);
+  if (slip > 0.0 && size > 0.0) {
+    const double factor = 1.0 + epsilon * slip / size;
+    return return_map(law, context, {factor * q[0], factor * q[1], factor * q[2]}, p, epsilon, state_old);
+  }
+  FrictionResponse stick{.traction = q};
+  set_isotropic(stick.dtraction_dq, 1.0);
+  return stick;
+}
+
 } // namespace amontons

@@ -47,4 +47,10 @@ std::array<double, 3> slip_vector(const FrictionResponse& response);
 FrictionResponse return_map(const FrictionLaw& law, const FrictionContext& context, const TangentVector& q, double p,
                             double epsilon, const FrictionState& state_old);
 
+/// What the first tangent of an increment takes for the response, before anything has moved: that of sliding on along q
+/// by `slip` (length; that of the last increment, at the same rate), or of sticking where it is zero. Without it a
+/// point at its limit sticks, and a region that slides is found anew in each increment, from its edge inwards.
+FrictionResponse guess_response(const FrictionLaw& law, const FrictionContext& context, const TangentVector& q,
+                                double p, double epsilon, const FrictionState& state_old, double slip);
+
 } // namespace amontons

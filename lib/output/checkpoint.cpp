@@ -14,7 +14,7 @@ namespace amontons {
 
 namespace {
 
-constexpr std::int64_t format_version = 3;
+constexpr std::int64_t format_version = 4;
 const std::string root = "/checkpoint";
 
 /// FNV-1a: enough to tell two decks apart, and the same on every machine.

@@ -426,6 +426,38 @@ def no_coefficient(bench):
         )
 
 
+# --- belt on a drum ---------------------------------------------------------------------------------------------------
+
+
+def belt_tension(deck, angle, sense):
+    """Tension at an angle from the loaded end where all of the belt slides, away from the load (1) or towards it (-1), as
+    a multiple of the load. Moments about the drum's axis: dT (R + t/2) = mu p R^2 dθ, with p R = T."""
+    size = deck["mesh"]["parameters"]
+    mu = deck["contact"][0]["friction"]["coulomb"]["mu"]
+    return np.exp(sense * mu * angle * size["R"] / (size["R"] + size["t"] / 2))
+
+
+def belt(bench):
+    """Euler's and Eytelwein's belt: tension at the held end, pressure along the drum, and few iterations while it goes on
+    sliding."""
+    results = bench.run("capstan")
+    history, load = results.history, 1.0
+    tension = -history["reaction_held_x"]
+    end_of_load = int(np.argmin(np.abs(history["time"] - 1.0)))
+    for name, row, sense in (("sliding to the load", end_of_load, -1), ("pulled", -1, 1)):
+        bench.close(f"{name}: tension", tension[row], load * belt_tension(results.deck, np.pi / 2, sense), 1e-3)
+        bench.below(f"{name}: area that sticks", history["contact_drum_stick_area"][row], 1e-12)
+    points = results.points["drum"]
+    angle = np.arctan2(points["places"][:, 1], points["places"][:, 0])
+    expected = load * belt_tension(results.deck, angle, 1) / results.deck["mesh"]["parameters"]["R"]
+    for start in range(9, 81, 9):  # whole cells
+        part = (angle >= np.radians(start)) & (angle < np.radians(start + 9))
+        force, reference = (np.sum(p[part] * points["weight"][part]) for p in (points["pressure"], expected))
+        bench.close(f"force on the drum from {start} to {start + 9} degrees", force, reference, 5e-3)
+    goes_on = np.delete(history["newton"], [0, end_of_load + 1])  # all but the first increment of each step
+    bench.below("most iterations of an increment that goes on like the one before", goes_on.max(), 4)
+
+
 CASES = {
     "friction_laws_gallery": {
         "reference": gallery,
@@ -434,6 +466,7 @@ CASES = {
         "no_coefficient": no_coefficient,
     },
     "block_on_incline": {"reference": incline, "solid": incline_solid},
+    "capstan": {"reference": belt},
     "slip_weakening_fault": {"reference": weakening, "drop": drop},
     "prakash_clifton_step": {"reference": pressure_step},
     "rate_and_state_slider": {

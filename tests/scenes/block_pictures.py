@@ -40,6 +40,30 @@ def block_on_incline(bench):
     return figure
 
 
+def capstan(bench):
+    results = bench.run("capstan")
+    points, history = results.points["drum"], results.history
+    angle = np.degrees(np.arctan2(points["places"][:, 1], points["places"][:, 0]))
+    order = np.argsort(angle)
+    theta = np.linspace(0.0, 90.0, 100)
+    pressure = block_cases.belt_tension(results.deck, np.radians(theta), 1) / results.deck["mesh"]["parameters"]["R"]
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
+    left.plot(angle[order], points["pressure"][order], **SIMULATION)
+    left.plot(theta, pressure, **REFERENCE, label="tension / R")
+    left.set_xlabel("angle from the loaded end, degrees")
+    left.set_ylabel("pressure on the drum, MPa")
+    left.set_ylim(0.0, 0.3)
+    right.plot(history["time"], -history["reaction_held_x"], **SIMULATION)
+    for sense, label in ((-1, "exp(-mu θ)"), (1, "exp(mu θ)")):
+        tension = block_cases.belt_tension(results.deck, np.pi / 2, sense)
+        right.axhline(tension, **REFERENCE, ls="--" if sense < 0 else "-", label=f"load x {label}")
+    right.set_xlabel("time: load until 1, then pull")
+    right.set_ylabel("tension at the held end, N")
+    for axes in (left, right):
+        axes.legend(fontsize=8)
+    return figure
+
+
 def slip_weakening_fault(bench):
     figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
     runs = (
@@ -131,7 +155,9 @@ def friction_laws_gallery(bench):
 
 PICTURES = {
     picture.__name__: picture
-    for picture in (block_on_incline, slip_weakening_fault, rate_and_state_slider, prakash_clifton_step, friction_laws_gallery)
+    for picture in (
+        block_on_incline, capstan, slip_weakening_fault, rate_and_state_slider, prakash_clifton_step, friction_laws_gallery
+    )
 }
 
 

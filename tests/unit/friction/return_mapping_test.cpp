@@ -252,3 +252,21 @@ TEST_CASE("a rate-and-state contact at rest: the derivative of creep, which is n
   CHECK(creep.slip < 1e-12);
   CHECK(creep.traction[0] == doctest::Approx(0.1).epsilon(1e-10));
 }
+
+TEST_CASE("a guessed response is that of sliding on, or of sticking") {
+  const Coulomb law{.mu = 0.4};
+  const FrictionContext context{.dt = 0.1, .factor = 1.0, .new_contact = false};
+  const double p = 2.0, epsilon = 50.0, slip = 0.01;
+  const TangentVector at_limit{0.4 * p * 0.6, 0.4 * p * 0.8, 0.0};
+  const auto sliding = guess_response(law, context, at_limit, p, epsilon, {}, slip);
+  CHECK(sliding.slip == doctest::Approx(slip));
+  CHECK((eigen(sliding.traction) - eigen(at_limit)).norm() < 1e-14);
+  // A radial change of q only makes it slide farther; the limit follows the pressure.
+  CHECK((eigen(sliding.dtraction_dq) * eigen(at_limit)).norm() < 1e-14);
+  CHECK((eigen(sliding.dtraction_dp) - eigen(at_limit) / p).norm() < 1e-14);
+
+  const auto sticking = guess_response(law, context, at_limit, p, epsilon, {}, 0.0);
+  CHECK(sticking.traction == at_limit);
+  CHECK((eigen(sticking.dtraction_dq) - Eigen::Matrix3d::Identity()).norm() == 0.0);
+  CHECK(eigen(sticking.dtraction_dp).norm() == 0.0);
+}
