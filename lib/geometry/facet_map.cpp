@@ -10,7 +10,6 @@ namespace amontons::facet {
 
 namespace {
 
-constexpr int largest = 9; // nodes of a surface facet
 /// Relative size below which a length or an area counts as zero.
 constexpr double degenerate = 1e-14;
 /// Distance relative to the facet's size within which a node lies where the linear facet has it.
@@ -41,6 +40,12 @@ Feature feature_at(ElementType type, const Xi& xi) {
   return touched == 0 ? Feature::Facet : touched == 1 ? Feature::Edge : Feature::Vertex;
 }
 
+/// Of the parabola through these values at -1, 0 and 1: the coefficients of 1, s and s².
+std::array<Eigen::Vector3d, 3> powers(const Eigen::Vector3d& before, const Eigen::Vector3d& middle,
+                                      const Eigen::Vector3d& after) {
+  return {middle, 0.5 * (after - before), 0.5 * (after + before) - middle};
+}
+
 } // namespace
 
 double outside(ElementType type, const Xi& xi) {
@@ -58,54 +63,74 @@ Xi clamped(ElementType type, Xi xi) {
 
 Surface::Surface(ElementType type_of_facet, std::span<const double> nodes_of_facet)
     : type(type_of_facet), nodes(nodes_of_facet) {
-  if (!is_bilinear()) return;
-  const Eigen::Vector3d p = node(0), q = node(1), r = node(2), s = node(3);
-  bilinear = {0.25 * (p + q + r + s), 0.25 * (q + r - p - s), 0.25 * (r + s - p - q), 0.25 * (p + r - q - s)};
+  for (auto& row : k)
+    row.fill(Eigen::Vector3d::Zero());
+  switch (type) {
+  case ElementType::Triangle6: {
+    const auto from_first = [&](int a) { return Eigen::Vector3d(node(a) - node(0)); };
+    k[0][0] = node(0);
+    k[1][0] = 4.0 * from_first(3) - from_first(1);
+    k[2][0] = 2.0 * from_first(1) - 4.0 * from_first(3);
+    k[0][1] = 4.0 * from_first(5) - from_first(2);
+    k[0][2] = 2.0 * from_first(2) - 4.0 * from_first(5);
+    k[1][1] = 4.0 * (from_first(4) - from_first(3) - from_first(5));
+    break;
+  }
+  case ElementType::Quadrilateral4: {
+    const Eigen::Vector3d p = node(0), q = node(1), r = node(2), s = node(3);
+    k[0][0] = 0.25 * (p + q + r + s);
+    k[1][0] = 0.25 * (q + r - p - s);
+    k[0][1] = 0.25 * (r + s - p - q);
+    k[1][1] = 0.25 * (p + r - q - s);
+    break;
+  }
+  case ElementType::Quadrilateral9: {
+    // Nodes with ξ₂ = -1, 0, 1, in each row those with ξ₁ = -1, 0, 1, relative to the one in the middle.
+    constexpr std::array<std::array<int, 3>, 3> grid{{{0, 4, 1}, {7, 8, 5}, {3, 6, 2}}};
+    std::array<std::array<Eigen::Vector3d, 3>, 3> row;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto at = [&](std::size_t i) { return Eigen::Vector3d(node(grid[j][i]) - node(8)); };
+      row[j] = powers(at(0), at(1), at(2));
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+      k[i] = powers(row[0][i], row[1][i], row[2][i]);
+    k[0][0] += node(8);
+    break;
+  }
+  default: // Triangle3
+    k[0][0] = node(0);
+    k[1][0] = node(1) - node(0);
+    k[0][1] = node(2) - node(0);
+  }
 }
 
 Eigen::Vector3d Surface::position(const Xi& xi) const {
-  if (is_bilinear()) return bilinear[0] + xi[0] * bilinear[1] + xi[1] * (bilinear[2] + xi[0] * bilinear[3]);
-  std::array<double, largest> values;
-  const int count = num_nodes(type);
-  shape_values(type, std::span(xi.data(), 2), std::span(values).first(count));
-  Eigen::Vector3d result = Eigen::Vector3d::Zero();
-  for (int i = 0; i < count; ++i)
-    result += values[i] * node(i);
-  return result;
+  const double s = xi[0], t = xi[1];
+  if (is_linear()) return k[0][0] + s * k[1][0] + t * (k[0][1] + s * k[1][1]);
+  const auto along = [&](std::size_t i) { return Eigen::Vector3d(k[i][0] + t * (k[i][1] + t * k[i][2])); };
+  return along(0) + s * (along(1) + s * along(2));
 }
 
 Tangents Surface::tangents(const Xi& xi) const {
-  if (is_bilinear()) {
-    Tangents result;
-    result << bilinear[1] + xi[1] * bilinear[3], bilinear[2] + xi[0] * bilinear[3];
+  const double s = xi[0], t = xi[1];
+  Tangents result;
+  if (is_linear()) {
+    result << k[1][0] + t * k[1][1], k[0][1] + s * k[1][1];
     return result;
   }
-  std::array<double, 2 * largest> gradients;
-  const int count = num_nodes(type);
-  shape_gradients(type, std::span(xi.data(), 2), std::span(gradients).first(2 * std::size_t(count)));
-  Tangents result = Tangents::Zero();
-  for (int i = 0; i < count; ++i) {
-    result.col(0) += gradients[2 * i] * node(i);
-    result.col(1) += gradients[2 * i + 1] * node(i);
-  }
+  result.col(0) = k[1][0] + t * (k[1][1] + t * k[1][2]) + 2.0 * s * (k[2][0] + t * (k[2][1] + t * k[2][2]));
+  result.col(1) = k[0][1] + s * (k[1][1] + s * k[2][1]) + 2.0 * t * (k[0][2] + s * (k[1][2] + s * k[2][2]));
   return result;
 }
 
 Eigen::Matrix3d Surface::second_derivatives(const Xi& xi) const {
-  if (is_bilinear()) {
-    Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
-    result.col(1) = bilinear[3];
-    return result;
-  }
-  std::array<double, 4 * largest> hessians;
-  const int count = num_nodes(type);
-  shape_hessians(type, std::span(xi.data(), 2), std::span(hessians).first(4 * std::size_t(count)));
+  const double s = xi[0], t = xi[1];
   Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
-  for (int i = 0; i < count; ++i) {
-    result.col(0) += hessians[4 * i] * node(i);
-    result.col(1) += hessians[4 * i + 1] * node(i);
-    result.col(2) += hessians[4 * i + 3] * node(i);
-  }
+  result.col(1) = k[1][1];
+  if (is_linear()) return result;
+  result.col(0) = 2.0 * (k[2][0] + t * (k[2][1] + t * k[2][2]));
+  result.col(1) += 2.0 * (s * k[2][1] + t * k[1][2] + 2.0 * s * t * k[2][2]);
+  result.col(2) = 2.0 * (k[0][2] + s * (k[1][2] + s * k[2][2]));
   return result;
 }
 

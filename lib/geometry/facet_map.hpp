@@ -28,11 +28,11 @@ Xi clamped(ElementType type, Xi xi);
 struct Surface {
   ElementType type;
   std::span<const double> nodes;
-  /// ρ = b₀ + b₁ ξ₁ + b₂ ξ₂ + b₃ ξ₁ ξ₂ on a bilinear quadrilateral, the commonest facet that needs iterations.
-  std::array<Eigen::Vector3d, 4> bilinear;
+  /// ρ = Σ k[i][j] ξ₁ⁱ ξ₂ʲ. Shape functions at every iterate took most of a projection's time.
+  std::array<std::array<Eigen::Vector3d, 3>, 3> k;
 
   Surface(ElementType type_of_facet, std::span<const double> nodes_of_facet);
-  bool is_bilinear() const { return type == ElementType::Quadrilateral4; }
+  bool is_linear() const { return element_order(type) == 1; } // k[i][j] = 0 for i or j = 2
   Eigen::Vector3d node(int a) const { return Eigen::Map<const Eigen::Vector3d>(nodes.data() + 3 * std::size_t(a)); }
   Eigen::Vector3d position(const Xi& xi) const;
   /// Columns ∂ρ/∂ξ₁, ∂ρ/∂ξ₂.

@@ -222,13 +222,60 @@ std::vector<Xi> sampled_starts(const Surface& surface, const Eigen::Vector3d& x,
   return chosen;
 }
 
+/// Is half the squared distance from x certainly convex on the whole reference cell? Then it has one minimum. Lower
+/// bounds, with |ξ| <= 1, of the Hessian's diagonal ρ_a · ρ_a + (ρ − x) · ρ_aa, and an upper one of what is beside it,
+/// from the coefficients of ρ. No for strongly curved facets, and for x beyond their centre of curvature.
+bool is_surely_convex(const Surface& surface, const Eigen::Vector3d& x) {
+  const auto& k = surface.k;
+  const Eigen::Vector3d r = k[0][0] - x;
+  // Size of ρ − x along v.
+  const auto along = [&](const Eigen::Vector3d& v) {
+    double sum = -std::abs(r.dot(v));
+    for (const auto& row : k)
+      for (const Eigen::Vector3d& term : row)
+        sum += std::abs((&term == &k[0][0] ? r : term).dot(v));
+    return std::array{r.dot(v) - sum, std::abs(r.dot(v)) + sum}; // least, largest absolute
+  };
+  double far = 0.0;
+  for (const auto& row : k)
+    for (const Eigen::Vector3d& term : row)
+      far += (&term == &k[0][0] ? r : term).norm();
+  // ∂ρ/∂ξ_a = first[a] + parts of these sizes.
+  const std::array first{k[1][0], k[0][1]};
+  const std::array<std::array<Eigen::Vector3d, 5>, 2> rest{
+      {{k[1][1], k[1][2], 2.0 * k[2][0], 2.0 * k[2][1], 2.0 * k[2][2]},
+       {k[1][1], k[2][1], 2.0 * k[0][2], 2.0 * k[1][2], 2.0 * k[2][2]}}};
+  const std::array<std::array<double, 2>, 2> bends{
+      {{2.0 * along(k[2][0])[0], 2.0 * (k[2][1].norm() + k[2][2].norm())},
+       {2.0 * along(k[0][2])[0], 2.0 * (k[1][2].norm() + k[2][2].norm())}}};
+  std::array<double, 2> diagonal{}, size{};
+  for (std::size_t a = 0; a < 2; ++a) {
+    diagonal[a] = first[a].squaredNorm() + bends[a][0] - far * bends[a][1];
+    for (const Eigen::Vector3d& part : rest[a]) {
+      diagonal[a] -= 2.0 * std::abs(first[a].dot(part));
+      size[a] += part.norm();
+    }
+  }
+  double beside = std::abs(first[0].dot(first[1])) + size[0] * size[1] + along(k[1][1])[1] +
+                  2.0 * far * (k[2][1].norm() + k[1][2].norm() + 2.0 * k[2][2].norm());
+  for (std::size_t a = 0; a < 2; ++a)
+    for (const Eigen::Vector3d& part : rest[1 - a])
+      beside += std::abs(first[a].dot(part));
+  return diagonal[0] > 0.0 && diagonal[1] > 0.0 && diagonal[0] * diagonal[1] > beside * beside;
+}
+
 /// The minimum of the distance over a curved facet: that of the border, unless a descent from the border or from
 /// samples inside ends at a closer point. Nothing when there are closer points but every descent failed.
 std::optional<Xi> closest_on_curved(const Surface& surface, const Eigen::Vector3d& x) {
   const Xi border = closest_on_border(surface, x);
+  const std::optional<Xi> inwards = step_inwards(surface, x, border);
+  if (is_surely_convex(surface, x)) {
+    if (!inwards) return border;
+    if (const std::optional<Xi> end = descend(surface, x, *inwards)) return end;
+  }
   const double border_distance = reduced_distance(surface, x, border);
   std::vector<Xi> starts = sampled_starts(surface, x, border_distance);
-  if (const std::optional<Xi> inwards = step_inwards(surface, x, border)) starts.push_back(*inwards);
+  if (inwards) starts.push_back(*inwards);
   const double rounding = 1e-13 * surface.extent() * (surface.extent() + (surface.position(border) - x).norm());
   Xi best = border;
   bool is_lost = false, is_replaced = false;

@@ -1,6 +1,8 @@
 """Surfaces that meet themselves: rings against the elastica, folds of a tube, ten discs found by search."""
 import numpy as np
 
+from harness import load_deck
+
 # --- an elastic ring --------------------------------------------------------------------------------------------------
 
 # Inextensible ring of radius 1 and bending stiffness 1 between frictionless plates: force, approach / diameter. Closed
@@ -203,6 +205,37 @@ def ten_discs(bench):
         bench.below(f"{ranks} ranks: displacement", error, 1e-6)
 
 
+def quarter_and_section(bench, steps, around=5):
+    """Histories of the tube in 3D, a quarter with this many cells around, and of its section, both with these steps: times,
+    forces of the full turn."""
+    solid = bench.run("tube_buckling_3d", {"steps": steps, "mesh.parameters.around": around})
+    parameters = {key: value for key, value in solid.deck["mesh"]["parameters"].items() if key != "around"}
+    changes = {"mesh.parameters": parameters, "contact.2.master.plane.point": [0, parameters["L"]], "steps": steps}
+    section = bench.run("tube_buckling_2d", changes, ranks=1)
+    return [
+        (run.history["time"], turn * run.history[name])
+        for run, turn, name in ((solid, -4.0, "reaction_top_z"), (section, -1.0, "reaction_top_y"))
+    ]
+
+
+def tube_quarter_peak(bench):
+    """The quarter in 3D against its section: elastic, where it converges with the cells around, and past the first peak."""
+    errors = {}
+    for around in (3, 5):
+        elastic = [{"name": "elastic", "to": 0.02, "increments": 1}]
+        (_, force), (_, exact) = quarter_and_section(bench, elastic, around)
+        errors[around] = abs(force[-1] / exact[-1] - 1.0)
+    bench.below("elastic force, off that of the section, 5 cells around", errors[5], 2e-3)
+    # Parts of a parabola for parts of a circle: third order at least.
+    bench.below("the same over that with 3 cells around", errors[5] / errors[3], (3 / 5) ** 3)
+    steps = load_deck("tube_buckling_3d")["steps"]
+    steps[1]["to"] = 0.4
+    steps[1]["increments"]["auto"].update(first=0.2, largest=0.5)
+    (time, force), (other_time, exact) = quarter_and_section(bench, steps)
+    bench.close("first peak of the force", force.max(), exact.max(), 0.01)
+    bench.close("force at 0.4 mm", np.interp(0.4, time, force), np.interp(0.4, other_time, exact), 0.02)
+
+
 CASES = {
     "ring_crush": {
         "plates": ring_plates,
@@ -211,5 +244,6 @@ CASES = {
         "pinch_friction": ring_pinched_friction,
     },
     "tube_buckling_2d": {"first_fold": tube_first_fold},
+    "tube_buckling_3d": {"peak": tube_quarter_peak},
     "ten_discs": {"balance": ten_discs},
 }
