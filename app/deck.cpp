@@ -217,6 +217,18 @@ ObjectRule<ContactDeck> contact_rule() {
   TaggedRule<decltype(ContactDeck::projection)> projection;
   projection.tag("closest_point", ObjectRule<ClosestPointDeck>(), "The closest point of the master surface.")
       .tag("slave_normal", ObjectRule<SlaveNormalDeck>(), "Along the slave's normal: robust on coarse master facets.");
+  ObjectRule<CubicMasterDeck> cubic;
+  cubic.optional("crease_angle", &CubicMasterDeck::crease_angle, number("degrees", Range::above_up_to(0, 180)),
+                 "Facets that meet at this angle or more (in the reference configuration) keep the edge between them.");
+  TaggedRule<decltype(ContactDeck::smoothing)> smoothing;
+  smoothing.tag("facets", ObjectRule<FacetedMasterDeck>(), "The facets of the mesh.")
+      .tag(
+          "cubic", cubic,
+          "Cubic facets through the nodes of the mesh (Overhauser's splines, in 3D products of two), whose normal does "
+          "not jump: for coarse masters that stand for a round surface, and for large sliding. For a meshed master of "
+          "order 1, in 3D of quadrangles, with nodal multipliers. The certificate goes on looking at the facets: "
+          "between facets that meet at an angle a it sees gaps and overlaps of a/8 of a facet (a in radians).",
+          "P. Wriggers, L. Krstulovic-Opara, J. Korelc, Int. J. Numer. Meth. Engng. 51 (2001) 1469-1495.");
   ObjectRule<FacetIntegrationDeck> facet;
   facet.optional("order", &FacetIntegrationDeck::order, integer(Range::between(1, 40)),
                  "Polynomial degree integrated exactly on a slave facet.");
@@ -252,6 +264,7 @@ ObjectRule<ContactDeck> contact_rule() {
       .optional("enforce", &ContactDeck::enforce, enforce_rule(),
                 "How the contact conditions are enforced. " + enforce_advice())
       .optional("projection", &ContactDeck::projection, projection, "How a slave point finds its master point.")
+      .optional("smoothing", &ContactDeck::smoothing, smoothing, "What slave points are projected onto.")
       .optional("integration", &ContactDeck::integration, integration, "How the slave surface is integrated over.")
       .optional(
           "search_distance", &ContactDeck::search_distance, number("length", Range::above(0)),

@@ -94,6 +94,10 @@ bool is_condensed(const EnforceDeck& enforce);
 
 struct ClosestPointDeck {};
 struct SlaveNormalDeck {};
+struct FacetedMasterDeck {};
+struct CubicMasterDeck {
+  double crease_angle = 40.0; // degrees
+};
 struct FacetIntegrationDeck {
   int order = 4; // polynomial degree integrated exactly on a slave facet
 };
@@ -111,6 +115,7 @@ struct ContactDeck {
   Located<MasterDeck> master;
   EnforceDeck enforce;
   std::variant<ClosestPointDeck, SlaveNormalDeck> projection;
+  std::variant<FacetedMasterDeck, CubicMasterDeck> smoothing;
   std::variant<FacetIntegrationDeck, SegmentIntegrationDeck> integration;
   std::optional<double> search_distance; // absent: a tenth of the diagonal of the smaller surface's box
   std::optional<FrictionLaw> friction;   // absent: frictionless

@@ -136,6 +136,28 @@ void check_finite(const Check& check) {
   }
 }
 
+/// What a smoothed master goes with.
+void check_smoothing(const Check& check) {
+  const auto& [deck, root, reading] = check;
+  if (!check.sound("contact")) return;
+  for (std::size_t i = 0; i < deck.contact.size(); ++i) {
+    const auto& contact = deck.contact[i];
+    if (!std::holds_alternative<CubicMasterDeck>(contact.smoothing)) continue;
+    const auto refuse = [&](bool is_wrong, const std::string& why) {
+      if (is_wrong) check.fail({"contact", i, "smoothing"}, list_path("contact", i) + ".smoothing: " + why);
+    };
+    refuse(meets_itself(contact), "a surface that meets itself is not smoothed, for only its master side would be. "
+                                  "Take the smoothing out.");
+    refuse(!meets_itself(contact) && !std::holds_alternative<Located<std::string>>(contact.master.value),
+           "a rigid shape is smooth already. Take the smoothing out.");
+    refuse(deck.mesh.order != 1, "facets of order 2 are curved already. Take the smoothing out, or set mesh.order: 1.");
+    refuse(std::holds_alternative<SegmentIntegrationDeck>(contact.integration),
+           "segments are cut by the facets of the mesh. Use `integration: {facet: {order: 6}}`.");
+    refuse(std::holds_alternative<ViDeck>(contact.enforce) || is_condensed(contact.enforce),
+           "vi and the dual basis have the facets of the mesh. Use `enforce: {semismooth: {}}`.");
+  }
+}
+
 /// Components that the space does not have.
 void check_space_of_vectors(const Check& check) {
   const auto& [deck, root, reading] = check;
@@ -423,6 +445,7 @@ void check_deck(const Deck& deck, const DeckNode& root, Reading& reading) {
   check_bodies(check);
   check_materials(check);
   check_finite(check);
+  check_smoothing(check);
   check_space_of_vectors(check);
   check_boundary(check);
   check_contact(check);

@@ -173,6 +173,8 @@ std::vector<ContactPair> make_pairs(const Deck& deck, const Mesh& mesh, const st
                           }},
                declared.enforce);
     if (std::holds_alternative<SlaveNormalDeck>(declared.projection)) pair.projection = SlaveNormal{};
+    if (const auto* cubic = std::get_if<CubicMasterDeck>(&declared.smoothing))
+      pair.smoothing = CubicMaster{cubic->crease_angle};
     if (declared.friction) {
       const auto* unknown = std::get_if<Semismooth>(&pair.enforcement);
       pair.friction = Friction{

@@ -140,6 +140,18 @@ std::set<FacetKey> facets_of_group(const RawMesh& raw, const std::string& name) 
   return facets;
 }
 
+/// Only quadrangles can be smoothed in 3D.
+void check_smoothing(Fit& fit, const ContactDeck& contact, const Located<std::string>& master) {
+  if (!std::holds_alternative<CubicMasterDeck>(contact.smoothing)) return;
+  const bool has_triangles = std::any_of(fit.raw.subs.begin(), fit.raw.subs.end(), [&](const auto& sub) {
+    return fit.raw.groups[sub.group].name == master.value && num_vertices(sub.type) == 3;
+  });
+  if (has_triangles)
+    fit.fail(master.place, "the master '" + master.value +
+                               "' is smoothed, but has triangles. Mesh it with quadrangles "
+                               "(Recombine Surface), or take the smoothing out.");
+}
+
 /// Checks the surfaces of all pairs; returns those that exist.
 std::vector<Located<std::string>> check_contact(Fit& fit) {
   std::vector<Located<std::string>> surfaces;
@@ -151,6 +163,7 @@ std::vector<Located<std::string>> check_contact(Fit& fit) {
     const auto* master = std::get_if<Located<std::string>>(&contact.master.value);
     if (!master || !fit.require_group(*master, fit.raw.dim - 1)) continue;
     surfaces.push_back(*master);
+    check_smoothing(fit, contact, *master);
     if (!slave_exists) continue;
     const auto slave_facets = facets_of_group(fit.raw, contact.slave);
     std::size_t common = 0;

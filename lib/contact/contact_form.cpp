@@ -226,7 +226,7 @@ void ContactForm::gather_slave_equations(std::int32_t facet, std::vector<PetscIn
 void ContactForm::gather_equations(const Group& group, std::vector<PetscInt>& equations) const {
   gather_slave_equations(group.facet, equations);
   if (coupled(group))
-    for (const auto node : points_.master()->nodes(group.master)) {
+    for (const auto node : points_.master()->stencil(group.master)) {
       const auto of_node = points_.master()->equations(node);
       equations.insert(equations.end(), of_node.begin(), of_node.end());
     }
@@ -268,7 +268,7 @@ void ContactForm::gap_variation(const ContactPoint& point, const Group& group, s
     for (int c = 0; c < d; ++c)
       variation[a * d + c] = point.normal[c] * shape[a];
   if (!coupled(group)) return;
-  const std::size_t masters = points_.master()->nodes(group.master).size();
+  const std::size_t masters = points_.master()->stencil(group.master).size();
   const std::size_t first = variation.size() - masters * d;
   for (std::size_t b = 0; b < masters; ++b)
     for (int c = 0; c < d; ++c)
@@ -292,7 +292,7 @@ void ContactForm::add_residual(const State& state, Residual& residual) {
       // Slave forces are local; the master may be on another rank and may not be in the matrix pattern yet.
       equations.clear();
       if (group.master >= 0)
-        for (const auto node : points_.master()->nodes(group.master)) {
+        for (const auto node : points_.master()->stencil(group.master)) {
           const auto of_node = points_.master()->equations(node);
           equations.insert(equations.end(), of_node.begin(), of_node.end());
         }
@@ -337,7 +337,7 @@ ContactBlock ContactForm::block_layout(const Group& group, std::size_t size) con
   }
   if (coupled(group))
     block.master = static_cast<std::ptrdiff_t>(size) -
-                   static_cast<std::ptrdiff_t>(points_.master()->nodes(group.master).size()) * d;
+                   static_cast<std::ptrdiff_t>(points_.master()->stencil(group.master).size()) * d;
   return block;
 }
 

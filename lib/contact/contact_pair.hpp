@@ -26,6 +26,15 @@ struct ClosestPoint {};
 struct SlaveNormal {};
 using ProjectionKind = std::variant<ClosestPoint, SlaveNormal>;
 
+/// What a slave point is projected onto: the facets of the mesh, or cubic ones through their nodes that have a
+/// continuous tangent plane (smooth_master.hpp), but for creases where neighbours meet at `crease_angle` (degrees) or
+/// more.
+struct FacetedMaster {};
+struct CubicMaster {
+  double crease_angle = 40.0;
+};
+using MasterSmoothing = std::variant<FacetedMaster, CubicMaster>;
+
 /// How the slave surface is integrated over: by a rule on each slave facet, or on the pieces of slave facets that
 /// single master facets cover. `degree`: of polynomials that are integrated exactly on a facet or piece.
 struct FacetIntegration {
@@ -67,6 +76,7 @@ struct ContactPair {
   std::variant<std::string, RigidMaster> master;
   Enforcement enforcement;
   ProjectionKind projection;
+  MasterSmoothing smoothing = FacetedMaster{};  // of a meshed master that is not the slave itself, order 1
   Integration integration = FacetIntegration{}; // segment: with a meshed master and small kinematics only
   /// Small: gap, normal, slip and area of the reference configuration, with projections that are found once. Finite:
   /// those of the current one, anew for every iterate.

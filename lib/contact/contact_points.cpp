@@ -33,6 +33,15 @@ void include_node(Box& box, const Mesh& mesh, std::int32_t node, std::span<const
   box.include(std::span<const double>(place.data(), mesh.dim));
 }
 
+/// Neighbours of a facet are no farther from it. Collective.
+double largest_diagonal(MPI_Comm comm, std::span<const Box> boxes) {
+  double largest = 0.0;
+  for (const auto& box : boxes)
+    largest = std::max(largest, box.diagonal());
+  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, comm);
+  return largest;
+}
+
 /// Those whose body is in.
 template <class IsIn>
 FacetSet facets_of(const FacetSet& all, IsIn&& is_in) {
@@ -95,9 +104,11 @@ void ContactPoints::gather_master(const std::string& surface) {
       for (const auto node : facets.facet(f))
         include_node(boxes[f], mesh_, node, *displacement);
   }
-  if (!reach.empty()) reach.inflate((is_following() ? 3.0 : 1.0) * pair_.search_distance);
+  double margin = (is_following() ? 3.0 : 1.0) * pair_.search_distance;
+  if (std::holds_alternative<CubicMaster>(pair_.smoothing)) margin += largest_diagonal(mesh_.comm, boxes);
+  if (!reach.empty()) reach.inflate(margin);
   if (mesh_.dim == 2) reach.low[2] = reach.high[2] = 0.0;
-  master_ = std::make_unique<MasterSurface>(layout_, facets, boxes, reach);
+  master_ = std::make_unique<MasterSurface>(layout_, facets, boxes, reach, pair_.smoothing);
   gathered_displacement_ = displacement_;
   accepted_is_gathered_ = true;
 }
@@ -363,6 +374,11 @@ void ContactPoints::attach(ContactPoint& point, const MasterPlace& place) const 
   point.normal = place.normal;
   point.master = place.facet >= 0 ? place.facet : ContactPoint::none;
   if (place.facet < 0) return;
+  if (master_->is_smooth()) {
+    const auto shape = master_->shape_table(place.facet, place.xi).row(0).eval();
+    std::copy(shape.begin(), shape.end(), point.master_shape.begin());
+    return;
+  }
   const auto type = master_->type(place.facet);
   shape_values(type, std::span(place.xi).first(element_dim(type)),
                std::span(point.master_shape).first(num_nodes(type)));
@@ -390,7 +406,7 @@ std::array<double, 3> ContactPoints::displacement_jump(const ContactPoint& point
     for (int c = 0; c < d; ++c)
       jump[c] += shape[a] * state.displacement[std::size_t(nodes[a]) * d + c];
   if (point.master < 0) return jump;
-  const auto masters = master_->nodes(point.master);
+  const auto masters = master_->stencil(point.master);
   for (std::size_t b = 0; b < masters.size(); ++b) {
     const auto displacement = master_->displacement(masters[b]);
     for (int c = 0; c < d; ++c)

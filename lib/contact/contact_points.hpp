@@ -33,8 +33,8 @@ struct ContactPoint {
   double gap0 = 1e300;           // in finite kinematics the current gap
   std::array<double, 3> place{}; // reference position
   std::array<double, 3> normal{};
-  double thickness = no_thickness; // of the body behind it, where the surface may meet itself
-  std::array<double, 9> master_shape{};
+  double thickness = no_thickness;                       // of the body behind it, where the surface may meet itself
+  std::array<double, most_stencil_nodes> master_shape{}; // of the master facet's stencil
 
   static constexpr std::int32_t none = -1;  // nothing within the search distance: open for good
   static constexpr std::int32_t rigid = -2; // the pair's rigid shape
@@ -99,9 +99,7 @@ class ContactPoints {
   /// As of the last follow().
   const PointNow& now(std::size_t i) const { return now_[i]; }
   /// A master facet at ξ.
-  SurfacePoint master_at(std::int32_t facet, std::span<const double> xi) const {
-    return surface_point(master_->type(facet), master_->positions(facet), xi);
-  }
+  SurfacePoint master_at(std::int32_t facet, std::span<const double> xi) const { return master_->at(facet, xi); }
   /// Where forces at a point act: in small kinematics at its reference place; in finite kinematics at its current
   /// place, along the slave's normal at the projection (point_tangent.cpp: there the slave takes the couple).
   std::array<double, 3> force_place(std::size_t i) const;

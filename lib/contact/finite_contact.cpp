@@ -4,8 +4,6 @@
 // tangent is unsymmetric also without friction: σ δg ⊗ D(weight) has no counterpart.
 #include "contact/contact_form.hpp"
 
-#include "math/reference_element.hpp"
-
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -17,32 +15,8 @@ namespace {
 /// Points whose gap is below this many facet sizes get a place in the matrix before they touch.
 constexpr double coupling_reach = 1.5;
 
-/// Shape values of a facet for its place (row 0), tangents (1, 2) and second derivatives (3, 4, 5), node by node.
-using ShapeTable = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 9>;
-
-ShapeTable shape_table(ElementType type, std::span<const double> xi) {
-  const int n = num_nodes(type), d = element_dim(type);
-  std::array<double, 9> values{};
-  std::array<double, 18> gradients{};
-  std::array<double, 36> hessians{};
-  const auto place = xi.first(d);
-  shape_values(type, place, std::span(values).first(n));
-  shape_gradients(type, place, std::span(gradients).first(n * d));
-  shape_hessians(type, place, std::span(hessians).first(n * d * d));
-  ShapeTable table = ShapeTable::Zero(6, n);
-  for (int a = 0; a < n; ++a) {
-    table(0, a) = values[a];
-    for (int i = 0; i < d; ++i) {
-      table(1 + i, a) = gradients[a * d + i];
-      for (int j = i; j < d; ++j)
-        table(3 + i + j, a) = hessians[(a * d + i) * d + j];
-    }
-  }
-  return table;
-}
-
-/// The nodes of one facet: where their equations begin in a dense block, and which vectors of a point the shape values
-/// of the table make of them, in rows and in columns (negative: none).
+/// The nodes of one facet (of its stencil): where their equations begin in a dense block, and which vectors of a point
+/// the shape values of the table make of them, in rows and in columns (negative: none).
 struct FacetPart {
   ShapeTable shape;
   std::ptrdiff_t first;
@@ -68,7 +42,7 @@ Eigen::Vector3d vector(const std::array<double, 3>& v) { return Eigen::Vector3d(
 
 std::vector<PetscInt> ContactForm::master_equations(std::int32_t facet) const {
   std::vector<PetscInt> equations;
-  for (const auto node : points_.master()->nodes(facet)) {
+  for (const auto node : points_.master()->stencil(facet)) {
     const auto of_node = points_.master()->equations(node);
     equations.insert(equations.end(), of_node.begin(), of_node.end());
   }
@@ -141,10 +115,10 @@ std::optional<ContactForm::TurningForces> ContactForm::turning_forces(std::size_
                                  .shear = vector(tangential_->traction(i))};
   const auto forces = point_forces(tractions, turning);
   TurningForces result{.on_slave = turning.slot == contact_slot::s, .values = {}};
-  const auto type = result.on_slave ? points_.slave().types[point.facet] : points_.master()->type(point.master);
-  const auto shape = shape_table(type, result.on_slave ? points_.xi(point) : now.xi);
-  result.values.assign(std::size_t(num_nodes(type)) * d, 0.0);
-  for (int a = 0; a < num_nodes(type); ++a)
+  const auto shape = result.on_slave ? shape_table(points_.slave().types[point.facet], points_.xi(point))
+                                     : points_.master()->shape_table(point.master, now.xi);
+  result.values.assign(std::size_t(shape.cols()) * d, 0.0);
+  for (int a = 0; a < shape.cols(); ++a)
     for (int c = 0; c < d; ++c)
       for (int k = 0; k < d - 1; ++k)
         result.values[a * d + c] += shape(1 + k, a) * forces[turning.slot + 3 * k + c];
@@ -172,7 +146,7 @@ double ContactForm::work_of_turning(const State& state) const {
     if (!forces) continue;
     const auto& point = points_.points()[i];
     const auto slaves = points_.slave().facet(point.facet);
-    const auto masters = points_.master()->nodes(point.master);
+    const auto masters = points_.master()->stencil(point.master);
     for (std::size_t k = 0; k < forces->values.size(); ++k)
       work += forces->values[k] * (forces->on_slave ? state.displacement[std::size_t(slaves[k / d]) * d + k % d]
                                                     : points_.master()->displacement(masters[k / d])[k % d]);
@@ -270,11 +244,11 @@ void ContactForm::add_point_now(std::size_t i, const Group& group, bool first_gu
     derivatives = tangent_at(i, first_guess);
     const auto* master = points_.master();
     if (group.master >= 0)
-      parts.push_back({shape_table(master->type(group.master), points_.now(i).xi), block.parts.master, of_master_rows,
+      parts.push_back({master->shape_table(group.master, points_.now(i).xi), block.parts.master, of_master_rows,
                        of_master_columns});
     if (group.old_master >= 0)
-      parts.push_back({shape_table(master->type(group.old_master), tangential_->path()->old(i).xi), block.old_master,
-                       nothing, of_old});
+      parts.push_back(
+          {master->shape_table(group.old_master, tangential_->path()->old(i).xi), block.old_master, nothing, of_old});
   } else {
     derivatives.tractions.stretch = stretch_at(i);
   }

@@ -40,7 +40,7 @@ std::vector<Box> gather_boxes(MPI_Comm comm, const Box& mine) {
 } // namespace
 
 MasterSurface::MasterSurface(const DofLayout& layout, const FacetSet& surface, std::span<const Box> boxes,
-                             const Box& reach)
+                             const Box& reach, const MasterSmoothing& smoothing)
     : dim_(layout.dim()) {
   const auto& mesh = layout.mesh();
   const auto reaches = gather_boxes(mesh.comm, reach);
@@ -65,6 +65,7 @@ MasterSurface::MasterSurface(const DofLayout& layout, const FacetSet& surface, s
   }
   receive(exchange(mesh.comm, MPI_INT64_T, numbers), exchange(mesh.comm, MPI_DOUBLE, positions));
   find_rim();
+  if (const auto* cubic = std::get_if<CubicMaster>(&smoothing)) smooth_.emplace(*this, *cubic);
   plant();
 
   displacement_.assign(equations_.size(), 0.0);
@@ -101,11 +102,26 @@ void MasterSurface::receive(std::span<const std::int64_t> numbers, std::span<con
   }
 }
 
+/// Of all nodes, where the surface stands.
+std::vector<double> MasterSurface::places() const {
+  std::vector<double> all(global_nodes_.size() * dim_);
+  for (std::int32_t f = 0; f < num_facets(); ++f)
+    for (std::size_t i = 0; i < nodes(f).size() * dim_; ++i)
+      all[std::size_t(nodes(f)[i / dim_]) * dim_ + i % dim_] = positions(f)[i];
+  return all;
+}
+
 void MasterSurface::plant() {
+  if (smooth_) smooth_->move(places());
   std::vector<Box> boxes(num_facets());
   for (std::int32_t f = 0; f < num_facets(); ++f)
     for (std::size_t a = 0; a < nodes(f).size(); ++a)
       boxes[f].include(positions(f).subspan(a * dim_, dim_));
+  for (std::int32_t f = 0; smooth_ && f < num_facets(); ++f) { // a facet lies in the hull of its control points
+    const auto control = smooth_->facet(f).control;
+    for (std::size_t at = 0; at < control.size(); at += dim_)
+      boxes[f].include(control.subspan(at, dim_));
+  }
   tree_ = BoxTree(boxes);
 }
 
@@ -127,6 +143,25 @@ bool MasterSurface::share_a_node(std::int32_t a, std::int32_t b) const {
   const auto others = nodes(b);
   return std::any_of(nodes(a).begin(), nodes(a).end(),
                      [&](std::int32_t node) { return std::find(others.begin(), others.end(), node) != others.end(); });
+}
+
+ShapeTable MasterSurface::shape_table(std::int32_t facet, std::span<const double> xi) const {
+  return smooth_ ? ShapeTable(smooth_->shape_table(facet, xi)) : amontons::shape_table(type(facet), xi);
+}
+
+SurfacePoint MasterSurface::at(std::int32_t facet, std::span<const double> xi) const {
+  return smooth_ ? surface_point(smooth_->facet(facet), xi) : surface_point(type(facet), positions(facet), xi);
+}
+
+Projection MasterSurface::closest_point(std::int32_t facet, std::span<const double> x) const {
+  return smooth_ ? amontons::closest_point(smooth_->facet(facet), x)
+                 : amontons::closest_point(type(facet), positions(facet), x);
+}
+
+Projection MasterSurface::project_along(std::int32_t facet, std::span<const double> x,
+                                        std::span<const double> direction) const {
+  return smooth_ ? amontons::project_along(smooth_->facet(facet), x, direction)
+                 : amontons::project_along(type(facet), positions(facet), x, direction);
 }
 
 void MasterSurface::move() {

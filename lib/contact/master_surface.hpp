@@ -4,11 +4,15 @@
 // is gathered again when what it has to meet has moved on.
 #pragma once
 
+#include "contact/shape_table.hpp"
+#include "contact/smooth_master.hpp"
 #include "fe/dof_layout.hpp"
 #include "geometry/box_tree.hpp"
+#include "geometry/projection.hpp"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -19,8 +23,10 @@ class MasterSurface {
  public:
   /// Gathers the facets of `surface` whose boxes (one for each of this rank's) meet `reach`, this rank's region of
   /// interest. Collective.
-  MasterSurface(const DofLayout& layout, const FacetSet& surface, std::span<const Box> boxes, const Box& reach);
+  MasterSurface(const DofLayout& layout, const FacetSet& surface, std::span<const Box> boxes, const Box& reach,
+                const MasterSmoothing& smoothing = FacetedMaster{});
 
+  int dim() const { return dim_; }
   std::int32_t num_facets() const { return static_cast<std::int32_t>(types_.size()); }
   std::int32_t num_nodes() const { return static_cast<std::int32_t>(global_nodes_.size()); }
   ElementType type(std::int32_t facet) const { return types_[facet]; }
@@ -42,6 +48,20 @@ class MasterSurface {
     return of_facet(moved_positions_.empty() ? facet_positions_ : moved_positions_, facet);
   }
   std::span<const double> reference_positions(std::int32_t facet) const { return of_facet(facet_positions_, facet); }
+  std::span<const std::int32_t> facets_at(std::int32_t node) const { return facets_of_node_[node]; }
+
+  // The shape of facets, smoothed or not, where the surface stands:
+  bool is_smooth() const { return smooth_.has_value(); }
+  /// Nodes on which the shape of a facet depends, its own first.
+  std::span<const std::int32_t> stencil(std::int32_t facet) const {
+    return smooth_ ? smooth_->stencil(facet) : nodes(facet);
+  }
+  /// Shape values of the stencil's nodes and their derivatives.
+  ShapeTable shape_table(std::int32_t facet, std::span<const double> xi) const;
+  SurfacePoint at(std::int32_t facet, std::span<const double> xi) const;
+  Projection closest_point(std::int32_t facet, std::span<const double> x) const;
+  Projection project_along(std::int32_t facet, std::span<const double> x, std::span<const double> direction) const;
+
   /// Displacement equations of a node, dim of them.
   std::span<const PetscInt> equations(std::int32_t node) const {
     return std::span(equations_).subspan(std::size_t(node) * dim_, dim_);
@@ -67,6 +87,7 @@ class MasterSurface {
   void receive(std::span<const std::int64_t> numbers, std::span<const double> positions);
   void find_rim();
   void plant();
+  std::vector<double> places() const;
   std::span<const double> of_facet(const std::vector<double>& values, std::int32_t facet) const {
     return std::span(values).subspan(std::size_t(offsets_[facet]) * dim_,
                                      std::size_t(offsets_[facet + 1] - offsets_[facet]) * dim_);
@@ -85,6 +106,7 @@ class MasterSurface {
   std::vector<double> displacement_;
   std::vector<std::int32_t> rim_;                 // nodes on the rim in 2D, sorted
   std::vector<std::array<std::int32_t, 2>> rims_; // edges on the rim in 3D, sorted
+  std::optional<SmoothMaster> smooth_;
   BoxTree tree_;
   VecHandle local_;
   ScatterHandle scatter_;

@@ -73,7 +73,7 @@ Nearest nearest_facing(const MasterSurface& master, const SearchPoint& point, do
   Nearest nearest;
   const auto consider = [&](std::int32_t candidate, double radius) {
     if (point.own && master.share_a_node(point.own->facet, candidate)) return;
-    const auto projection = closest_point(master.type(candidate), master.positions(candidate), point.place);
+    const auto projection = master.closest_point(candidate, point.place);
     if (!projection.found || projection.distance > std::min(best, radius)) return;
     if (!is_facing(point.normal, projection.normal)) return;
     if (point.own && !is_partner(master, *point.own, candidate, projection, height_over(projection, point.place)))
@@ -119,6 +119,8 @@ MasterPlace find_closest(const MasterSurface& master, const SearchPoint& point, 
   const double size = facet_size(type, master.positions(facet));
   if (master.on_rim(facet, corners)) { // beyond the end of the master: nothing to touch
     if (aside > rim_tolerance * size) return {};
+  } else if (master.is_smooth() && aside <= rim_tolerance * size) {
+    return place; // no edge: the facet beyond has the same normal there
   } else if (nearest.distance > rim_tolerance * size) {
     const double sign = height < 0.0 ? -1.0 : 1.0;
     for (std::size_t c = 0; c < point.place.size(); ++c)
@@ -145,8 +147,7 @@ MasterPlace find_along_normal(const MasterSurface& master, const SearchPoint& po
   MasterPlace place;
   for (const auto candidate : scratch) {
     if (point.own && master.share_a_node(point.own->facet, candidate)) continue;
-    const auto projection =
-        project_along(master.type(candidate), master.positions(candidate), point.place, point.normal);
+    const auto projection = master.project_along(candidate, point.place, point.normal);
     if (!projection.found || projection.distance > best || !is_facing(point.normal, projection.normal)) continue;
     if (point.own && !is_partner(master, *point.own, candidate, projection, height_over(projection, point.place)))
       continue;

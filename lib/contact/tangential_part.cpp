@@ -209,7 +209,7 @@ void TangentialPart::add_residual(std::size_t begin, std::size_t end, Residual& 
   const auto nodes = points_.slave().facet(first.facet);
   std::vector<PetscInt> masters, unknowns;
   if (first.master >= 0)
-    for (const auto node : points_.master()->nodes(first.master)) {
+    for (const auto node : points_.master()->stencil(first.master)) {
       const auto of_node = points_.master()->equations(node);
       masters.insert(masters.end(), of_node.begin(), of_node.end());
     }
@@ -288,7 +288,7 @@ void TangentialPart::jump_variation(const ContactPoint& point, const ContactBloc
     for (int c = 0; c < d; ++c)
       motion[c * n + a * d + c] = shape[a];
   if (layout.master < 0) return;
-  for (std::size_t b = 0; b < points_.master()->nodes(point.master).size(); ++b)
+  for (std::size_t b = 0; b < points_.master()->stencil(point.master).size(); ++b)
     for (int c = 0; c < d; ++c)
       motion[c * n + layout.master + b * d + c] = -point.master_shape[b];
 }

@@ -159,3 +159,59 @@ def rubber_at_half(seed):
         yield "force against that of incompressible rubber", abs(run.history["reaction_block_bottom_y"][-1] / exact - 1), 2e-3
 
     return mesh, whole, check
+
+
+# --- a thin wall folded onto itself
+
+
+def hairpin(place):
+    """A strip bent to two legs 1 long and half a circle between them; its lower side is the inside, of radius 0.23."""
+    leg, radius = 1.0, 0.23 + place[1]
+    angle = (place[0] - leg) / 0.25
+    if angle < 0:
+        return np.array([leg - place[0], -radius, 0])
+    if angle < np.pi:
+        return np.array([-radius * np.sin(angle), -radius * np.cos(angle), 0])
+    return np.array([place[0] - leg - 0.25 * np.pi, radius, 0])
+
+
+@scene("a pressure folds the legs of a thin hairpin onto each other and lets them go", ("uzawa", "penalty"), name="folded_wall")
+@scene("the same with friction", ("uzawa", "penalty"), name="folded_wall_friction", mu=0.3)
+def folded_wall(seed, mu=None):
+    mesh = Mesh(seed)
+    mesh.box("wall", (0, 0), (2 + 0.25 * np.pi, 0.04), (60, 2), bend=hairpin)
+    inside = np.arange(0, len(mesh.nodes), 3)  # nodes of the lower side, along the strip
+    # The ends are brought from 0.46 to 0.1 of each other, then the pressure comes and goes.
+    boundary = [
+        hold("wall_left", x=0, y=0),
+        hold("wall_right", x=0, y="-0.36*min(t,1)"),
+        {"on": "wall_top", "pressure": f"{1e-3 * E}*max(0,1-abs(t-2))"},
+    ]
+    contact = {"name": "pair", "between": "all"}
+    if mu is not None:
+        contact["friction"] = {"coulomb": {"mu": mu}}
+    whole = deck({"wall": (E, NU)}, boundary, [contact], ((1, 5), (2, 20), (3, 20)))
+    whole["kinematics"] = "finite"
+    # A wall that is soft in bending: see inputs/ring_crush.
+    whole["petsc"] = {"snes_linesearch_type": "nleqerr"}
+
+    def check(run):
+        time, area = run.history["time"], run.history["contact_pair_area"]
+        yield "area before the pressure and after", area[0] + np.interp(1.0, time, area) + area[-1], 1e-12
+        yield "length that is missing of 0.2 in contact", 0.2 - np.interp(2.0, time, area), 0.0
+        folded = run.at(2.0)
+        now = (folded.places[:, :2] + folded.nodal["displacement"][:, :2])[inside]
+        lower, upper = now[: len(now) // 2], now[len(now) // 2 :]
+        near = (upper[:, 0] > 0.1) & (upper[:, 0] < 0.9)
+        heights = np.interp(upper[near, 0], lower[::-1, 0], lower[::-1, 1])
+        yield "legs overlap by / thickness", max(0.0, (heights - upper[near, 1]).max()) / 0.04, 0.02
+        if mu is None:
+            yield "forces at t = 1.8 and 2.2", folding_difference(run, 1.8, 2.2), 1e-6
+
+    return mesh, whole, check
+
+
+def folding_difference(run, first, second):
+    time = run.history["time"]
+    one, other = (np.array([run.history[f"reaction_wall_right_{c}"][np.argmin(np.abs(time - t))] for c in "xy"]) for t in (first, second))
+    return np.linalg.norm(one - other) / np.linalg.norm(one)
