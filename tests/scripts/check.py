@@ -17,6 +17,7 @@ import yaml
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tests/scenes"), str(TOP / "tests/support")]
+import browser  # noqa: E402
 import hertz_cases  # noqa: E402
 from harness import Results, load_deck  # noqa: E402
 from score import Score  # noqa: E402
@@ -362,10 +363,20 @@ def report(case):
     case.expect("no folder: status 2 and a message", status == 2 and "there is no folder" in text, text)
 
 
+def browsed(case):
+    """The page of a small run, as a browser without a window sees and prints it."""
+    deck = load_deck("hertz_2d")
+    deck["mesh"].update(file=str(TOP / "inputs/hertz_2d/hertz_2d.geo"), parameters={"h": 0.2, "overlap": 0.001})
+    path = case.folder / "hertz.yaml"
+    path.write_text(yaml.safe_dump(deck, sort_keys=False), encoding="utf-8")
+    run_deck(case, path)
+    browser.check_pages(case, case.folder / "hertz_run")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     cases = {"study": study, "resume": resume, "wrong_study": wrong_study, "effects": effects, "report": report,
-             "plan": plan, "wrong_plan": wrong_plan, "bench": bench}
+             "plan": plan, "wrong_plan": wrong_plan, "bench": bench, "browser": browsed}
     parser.add_argument("case", choices=cases)
     parser.add_argument("--program", required=True)
     arguments = parser.parse_args()
