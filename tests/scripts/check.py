@@ -104,6 +104,30 @@ def study(case):
         case.expect(f"{word}: recorded", status == 0 and table_of(case.folder / word)[0]["outcome"] == word, text)
 
 
+def memory(case):
+    """One variant runs out of memory, as the system tells it: it is recorded as such, and the rest goes on."""
+    short = case.folder / "short_of_memory"
+    short.write_text(f"""#!/bin/bash
+# The program, but for meshes with h = 0.15: as if it asked for more than there is.
+deck=$1
+if [ "$deck" != check ] && [ "$deck" != schema ] && grep -q 'h: 0.15' "$deck"; then
+  echo "terminate called after throwing an instance of 'std::bad_alloc'" >&2
+  exit 134
+fi
+exec {case.program} "$@"
+""", encoding="utf-8")
+    short.chmod(0o755)
+    path = case.study_file(case.hertz({"mesh": {"mesh.parameters.h": [0.2, 0.15]}}))
+    status, text = case.run("study", path, "--program", short)
+    rows = {row["mesh.parameters.h"]: row for row in table_of(case.folder / "results/small_study")}
+    case.expect("the study ends with 0", status == 0, text)
+    case.expect("the variant is recorded, once, with what was said", rows["0.15"]["outcome"] == "out of memory"
+                and rows["0.15"]["runs"] == "1" and "bad_alloc" in rows["0.15"]["message"], rows["0.15"])
+    case.expect("the rest went on", rows["0.2"]["outcome"] == "certified" and rows["0.2"]["runs"] == "2", rows["0.2"])
+    words = (case.folder / "results/small_study/words.md").read_text(encoding="utf-8")
+    case.expect("the words name it", "h 0.15" in words.split("Not in the comparison")[-1], words)
+
+
 def bench(case):
     """The smallest size without peers: a row a run, ratios that are ratios, shares that add up; then a wrong bench."""
     content = {"deck": str(TOP / "inputs/press_and_slide_3d/press_and_slide_3d.yaml"),
@@ -376,7 +400,7 @@ def browsed(case):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     cases = {"study": study, "resume": resume, "wrong_study": wrong_study, "effects": effects, "report": report,
-             "plan": plan, "wrong_plan": wrong_plan, "bench": bench, "browser": browsed}
+             "plan": plan, "wrong_plan": wrong_plan, "bench": bench, "memory": memory, "browser": browsed}
     parser.add_argument("case", choices=cases)
     parser.add_argument("--program", required=True)
     arguments = parser.parse_args()
