@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """An effect that is off is not there: instructions.py CASE --program PATH [--valgrind valgrind]
 
-Runs of patch_2d, counted by valgrind's callgrind (instructions outside of the dynamic linker, allocations) and by PETSc
-(objects).
+Runs of patch_2d, counted by valgrind's callgrind (allocations; instructions outside of the dynamic linker and of MPI,
+which waits longer on a busy machine) and by PETSc (objects).
 
 off: the deck with only what it must say against the same with every effect written down as off: equal unknowns and
 PETSc objects, instructions and allocations within a hundredth; and in neither has any function of any effect of the
@@ -76,8 +76,11 @@ OFF = {"kinematics": "small", "estimate_path_error": False, "look_for_other_solu
 OFF_OF_PAIRS = {"contact.0.projection": {"closest_point": {}}}
 
 
+NOT_COUNTED = re.compile(r"/ld-linux|/libopen-|/libmpi|/libevent|/libpmix|/openmpi/|/pmix")
+
+
 def counted(path):
-    """(instructions by function, allocations) of a callgrind file, without the dynamic linker."""
+    """(instructions by function, allocations) of a callgrind file."""
     names, own, allocations = {}, Counter(), 0
     library = function = called = ""
     skip = False
@@ -102,7 +105,7 @@ def counted(path):
                     allocations += int(value.split()[0])
                 skip = True  # the next line has the cost of what was called
             elif line[0] in "0123456789+-*":
-                if not skip and "/ld-linux" not in library:
+                if not skip and not NOT_COUNTED.search(library):
                     own[function] += int(line.split()[1])
                 skip = False
     return own, allocations
