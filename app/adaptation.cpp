@@ -34,7 +34,8 @@ const char* quantity_method(AdaptQuantity quantity) {
     return "patch recovery (Zienkiewicz and Zhu, 1992), in the energy norm";
   default:
     return "influence of the cells' errors on the quantity (dual weighted residual, recovered stresses), without "
-           "their cancelling, or what the quantity has changed since the last mesh if that is more, where it is linear "
+           "their cancelling, for a peak with what linear pressures may be off there, or what the quantity has changed "
+           "since the last mesh if that is more, where it is linear "
            "elastic, frictionless and not `vi` or with the dual basis; else the "
            "change of the quantity from pass to pass, continued as if its error fell as that in the energy norm, which "
            "is slower than it does where it is smooth; no bound";

@@ -117,8 +117,8 @@ std::string budget_sentence(const Json& budget) {
                       100 * mesh.at("share_near_contact_edge").get<double>());
   for (const auto& [pair, figures] : budget.at("figures").items())
     if (figures.is_object() && figures.contains("peak_pressure"))
-      line += formatted(", peak pressure of %s %+.2g %%", pair.c_str(),
-                        100 * figures.at("peak_pressure").at("relative").get<double>());
+      line += formatted(", peak pressure of %s %.2g %%", pair.c_str(),
+                        100 * figures.at("peak_pressure").at("without_cancelling").get<double>());
   const auto& steps = budget.at("path").at("relative");
   line += steps.is_null() ? ", increments not measured" : formatted(", increments %.2g %%", 100 * steps.get<double>());
   if (budget.at("constraint").contains("penetration"))

@@ -2,6 +2,7 @@
 // names, from the influence of every cell on them: `errors.figures` of the summary.
 #pragma once
 
+#include "accuracy/followed_peak.hpp"
 #include "increment_solver.hpp"
 #include "scene.hpp"
 
@@ -16,7 +17,8 @@ struct FigureError {
   std::string pair, figure;  // "force" (its size), "peak_pressure" (mean of the pressure above half of the largest)
   double value = 0.0;        // of a mean displacement; else in a unit of its own
   double relative = 0.0;     // (exact − computed) / computed, estimated, with its sign
-  double bound = 0.0;        // the same if the parts of the cells did not cancel
+  double deviation = 0.0;    // of a peak: what linear pressures may be off at its node, >= 0 (peak_deviation)
+  double bound = 0.0;        // |exact − computed| / |computed| if no parts cancelled: of the cells, and the deviation
   std::vector<double> cells; // |part| of this rank's cells, over the figure
 };
 
@@ -24,8 +26,9 @@ struct FigureError {
 struct FigureInfluences {
   struct Figure {
     std::string pair, name;
-    double value;                  // in the unit of the influence
-    std::vector<double> influence; // displacement, num_local x dim
+    double value = 0.0;                 // in the unit of the influence
+    std::vector<double> influence = {}; // displacement, num_local x dim
+    double deviation = 0.0;             // of a peak
   };
   std::vector<Figure> figures;
   std::string reason; // why there are none, in words; else empty

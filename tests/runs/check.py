@@ -184,6 +184,11 @@ def accuracy(case):
         mesh = errors["discretization"]
         case.expect(f"refine {refine}: a part of the mesh's error", 0 < mesh["share_near_contact_edge"] < 1, mesh)
         case.expect(f"refine {refine}: its cost is timed", 0 < mesh["cost"]["seconds"] < summary["resources"]["wall_seconds"])
+        shares = {name: error["cost"]["share_of_time"] for name, error in errors.items() if "cost" in error}
+        measured = set(errors) - ({"path"} if refine else set())
+        case.expect(f"refine {refine}: what each estimate took of the time", set(shares) == measured
+                    and all(0 < share < 0.5 for share in shares.values()), shares)
+        case.expect(f"refine {refine}: the error near the edge of contact", mesh["relative_near_contact_edge"] > 0, mesh)
         items = summary["certificate"]["items"]
         case.expect(f"refine {refine}: the certificate's penetration",
                     errors["constraint"]["penetration"] == items["penetration"]["worst"], errors)

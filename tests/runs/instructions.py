@@ -1,76 +1,206 @@
 #!/usr/bin/python3
-"""An effect that is off is not there: instructions.py --program PATH [--valgrind valgrind]
+"""An effect that is off is not there: instructions.py CASE --program PATH [--valgrind valgrind]
 
-Counts instructions of a frictionless run with valgrind's callgrind. No function of the tangential part of contact or of
-a friction law may have executed; what else has friction in its name (declaring the deck's keys, asking whether there is
-any) must be below a hundredth of the whole by far. The same deck with friction is the control that these functions can
-be seen at all.
+Runs of patch_2d, counted by valgrind's callgrind (allocations; instructions outside of the dynamic linker and of MPI,
+which waits longer on a busy machine) and by PETSc (objects).
+
+off: the deck with only what it must say against the same with every effect written down as off: equal unknowns and
+PETSc objects, instructions and allocations within a hundredth; and in neither has any function of any effect of the
+table run.
+elastic: the same for the two bodies without a contact pair; nothing of contact runs.
+on: the effects of the table switched on, as the control that their functions can be seen at all.
 """
 import argparse
+import copy
+import json
 import os
 import re
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from pathlib import Path
 
 import yaml
 
 TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(TOP / "scripts"))
-from deck_edit import read_yaml  # noqa: E402
+sys.path[:0] = [str(TOP / "scripts"), str(TOP / "tests/scenes"), str(TOP / "tests/support")]
+from harness import load_deck, set_key  # noqa: E402
+from score import Score  # noqa: E402
 
-# What computes friction at points: the tangential part of pairs, and what the laws are asked.
-KERNEL = re.compile(r"amontons::(TangentialPart::|ContactForm::evaluate_friction|"
-                    r"\w+::(limit|steepest_weakening|initial_state)\(amontons::FrictionContext)")
-NAMED = re.compile(r"amontons::.*(friction|tangential)", re.IGNORECASE)
+# Effect -> functions that compute it. Declaring keys, and asking whether a deck has them, is not an effect.
+EFFECTS = {
+    "friction": r"TangentialPart::|ContactForm::evaluate_friction|\w+::limit\(amontons::FrictionContext",
+    "state of friction": r"\w+::initial_state\(amontons::FrictionContext",
+    "finite kinematics": r"FiniteBulkForm::",
+    "pressure that follows": r"FollowerPressureForm::",
+    "plasticity": r"radial_return|FinitePlastic::",
+    "stabilization": r"ViscousForm::",
+    "path error": r"IncrementSolver::solve_halves|path_difference|PathRecord::",
+    "path control": r"PathControl::",
+    "other solutions": r"SolutionCensus::",
+    "adaptive meshing": r"Adaptation::|wanted_sizes|simplex_errors",
+    "multipliers in an outer loop": r"UzawaLoop::|UzawaMultipliers::",
+    "bounds": r"BoundedNewton::|MortarTransform::",
+    "dual basis": r"CondensedNewton::|CondensedContact::",
+    "segments": r"place_by_segments",
+    "contact with itself": r"is_partner",
+    "refinement": r"refined\(amontons::PlexMesh",
+    "audit of inertia": r"audit_motion",
+    "audit of yielding": r"audit_yield",
+}
+
+# Changes to the deck that switch effects on, as many at a time as go together.
+PLASTIC = {"elastic_plastic": {"E": 70, "nu": 0.2, "hardening": {"linear": {"yield": 0.5, "H": 10}}}}
+AGEING = {"rate_and_state": {"mu": 0.02, "a": 0.001, "b": 0.002, "L": 0.1, "v0": 1, "evolution": "ageing"}}
+ON = (
+    (("friction", "state of friction", "finite kinematics", "pressure that follows", "plasticity", "stabilization",
+      "path error", "other solutions", "refinement", "audit of inertia", "audit of yielding"),
+     {"kinematics": "finite", "materials.soft": PLASTIC, "materials.stiff.density": 1e-9, "mesh.refine": 1,
+      "materials.stiff.yield_stress": 100, "contact.0.friction": AGEING, "look_for_other_solutions": True,
+      "estimate_path_error": True, "stabilization": {"viscous": {"ratio": 1e-6}}}),
+    (("path control", "multipliers in an outer loop", "contact with itself"),
+     {"kinematics": "finite", "contact.0": {"name": "all", "between": "all", "enforce": {"uzawa": {}}},
+      "steps.0.increments": {"auto": {"first": 1, "path_tolerance": 0.5}}}),
+    (("adaptive meshing",),
+     {"mesh.parameters": {"n_lower": 3, "n_upper": 5, "quads": 0, "structured": 0},
+      "adapt": {"quantity": "energy_norm", "target_error": 0.5, "max_passes": 1}}),
+    (("bounds", "segments"), {"contact.0.enforce": {"vi": {}}, "contact.0.integration": {"segment": {}}}),
+    (("dual basis",), {"contact.0.enforce": {"semismooth": {"basis": "dual"}}}),
+)
+CONTACT = r"Contact(Form|Points|Search)::|MasterSurface::|peak_deviation"
+
+# All that a deck can say of effects without having any.
+OFF = {"kinematics": "small", "estimate_path_error": False, "look_for_other_solutions": False, "figures": {},
+       "body_force": {}, "mesh.refine": 0, "materials.soft.density": 0}
+OFF_OF_PAIRS = {"contact.0.projection": {"closest_point": {}}}
 
 
-def instructions(options, folder, friction):
-    """Function -> instructions of its own, of one run of patch_2d."""
-    deck = read_yaml(TOP / "inputs/patch_2d/patch_2d.yaml")
+NOT_COUNTED = re.compile(r"/ld-linux|/libopen-|/libmpi|/libevent|/libpmix|/openmpi/|/pmix")
+
+
+def counted(path):
+    """(instructions by function, allocations) of a callgrind file."""
+    names, own, allocations = {}, Counter(), 0
+    library = function = called = ""
+    skip = False
+
+    def name_of(text):
+        number, _, name = text.partition(" ")
+        return names.setdefault((kind, number), name) if name else names[kind, number]
+
+    with open(path, encoding="utf-8") as file:
+        for line in file:
+            key, is_key, value = line.rstrip("\n").partition("=")
+            kind = {"cob": "ob", "cfn": "fn"}.get(key, key)
+            if is_key and key == "ob":
+                library = name_of(value)
+            elif is_key and key == "fn":
+                function = name_of(value)
+            elif is_key and key in ("cfn", "cob"):
+                name = name_of(value)
+                called = name if key == "cfn" else called
+            elif key == "calls":
+                if called in ("malloc", "calloc", "operator new(unsigned long)"):
+                    allocations += int(value.split()[0])
+                skip = True  # the next line has the cost of what was called
+            elif line[0] in "0123456789+-*":
+                if not skip and not NOT_COUNTED.search(library):
+                    own[function] += int(line.split()[1])
+                skip = False
+    return own, allocations
+
+
+class Run:
+    """What a run of a deck took."""
+
+    def __init__(self, options, folder, deck):
+        path, counts, objects = (folder / name for name in ("deck.yaml", "callgrind.out", "objects.txt"))
+        path.write_text(yaml.safe_dump(deck, sort_keys=False), encoding="utf-8")
+        done = subprocess.run([options.valgrind, "--tool=callgrind", f"--callgrind-out-file={counts}", options.program,
+                               str(path), "--out", str(folder / "results"), "-log_view", f"ascii:{objects}"],
+                              capture_output=True, text=True, check=False,
+                              env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+        if done.returncode not in (0, 4):
+            sys.exit(f"the run under valgrind ended with {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        self.own, self.allocations = counted(counts)
+        self.instructions = sum(self.own.values())
+        self.unknowns = json.loads((folder / "results/summary.json").read_text(encoding="utf-8"))["scene"]["unknowns"]
+        table = objects.read_text(encoding="utf-8").partition("Object Type")[2]
+        self.objects = {name: int(made) for name, made in re.findall(r"^ +(\S.*?) {2,}(\d+) +\d+$", table, re.MULTILINE)}
+
+    def inside(self, functions):
+        """Instructions in the program's own functions of this description."""
+        pattern = re.compile(r"amontons::.*(" + functions + ")")
+        reading = re.compile(r"Rule<|Reading|DeckNode")
+        return sum(count for name, count in self.own.items() if pattern.search(name) and not reading.search(name))
+
+
+def minimal(pairs=True):
+    deck = load_deck("patch_2d")
     deck["mesh"]["file"] = str(TOP / "inputs/patch_2d/patch_2d.geo")
-    if friction:
-        deck["contact"][0]["friction"] = {"coulomb": {"mu": 0.02}}
-    path, counts = folder / "deck.yaml", folder / "callgrind.out"
-    path.write_text(yaml.safe_dump(deck, sort_keys=False), encoding="utf-8")
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-    done = subprocess.run([options.valgrind, "--tool=callgrind", f"--callgrind-out-file={counts}", options.program, str(path),
-                           "--out", str(folder / "results")], capture_output=True, text=True, check=False, env=environment)
-    if done.returncode != 0:
-        sys.exit(f"the run under valgrind ended with {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
-    text = subprocess.run(["callgrind_annotate", "--threshold=100", str(counts)], capture_output=True, text=True,
-                          check=True).stdout
-    found = {}
-    for count, name in re.findall(r"^\s*([\d,]+) \([^)]*\)\s+\S*?:(.*?)(?: \[|$)", text, re.MULTILINE):
-        found[name] = found.get(name, 0) + int(count.replace(",", ""))
-    return found
+    set_key(deck, "mesh.parameters.n_upper", 5)
+    deck["contact"][0].pop("integration")
+    if not pairs:
+        del deck["contact"]
+        deck["boundary"].append({"on": "upper_bottom", "displacement": {"y": 0}})
+    return deck
+
+
+def changed(deck, changes):
+    deck = copy.deepcopy(deck)
+    for path, value in changes.items():
+        set_key(deck, path, value)
+    return deck
+
+
+def compare(score, options, folder, deck, off, effects):
+    plain, written = Run(options, folder, deck), Run(options, folder, changed(deck, off))
+    print(f"     {plain.instructions} and {written.instructions} instructions, {plain.allocations} and "
+          f"{written.allocations} allocations, {sum(plain.objects.values())} PETSc objects")
+    score.expect("instructions and objects were counted", plain.instructions > 1e7 and plain.allocations > 1e4
+                 and plain.objects.get("SNES") == 1, (plain.instructions, plain.allocations, plain.objects))
+    score.expect("no more unknowns", plain.unknowns == written.unknowns, (plain.unknowns, written.unknowns))
+    score.expect("no more PETSc objects", plain.objects == written.objects, (plain.objects, written.objects))
+    for what in ("instructions", "allocations"):
+        ratio = getattr(written, what) / getattr(plain, what)
+        score.expect(f"as many {what} within 1 %: {100 * (ratio - 1):+.2f} %", abs(ratio - 1.0) < 0.01)
+    for name, functions in effects.items():
+        for run in (plain, written):
+            found = run.inside(functions)
+            score.expect(f"nothing of {name} has run", found == 0, found)
+
+
+def off(score, options, folder):
+    compare(score, options, folder, minimal(), {**OFF, **OFF_OF_PAIRS}, EFFECTS)
+
+
+def elastic(score, options, folder):
+    compare(score, options, folder, minimal(pairs=False), OFF,
+            {"contact": CONTACT, **EFFECTS})
+
+
+def on(score, options, folder):
+    seen = {"contact": Run(options, folder, minimal()).inside(CONTACT)}
+    for names, changes in ON:
+        run = Run(options, folder, changed(minimal(), changes))
+        seen.update({name: run.inside(EFFECTS[name]) for name in names})
+    for name, found in seen.items():
+        score.expect(f"{name} can be seen: {found} instructions", found > 100)
+    score.expect("every effect was switched on", set(seen) == {"contact", *EFFECTS}, set(EFFECTS) - set(seen))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    cases = {"off": off, "elastic": elastic, "on": on}
+    parser.add_argument("case", choices=cases)
     parser.add_argument("--program", required=True)
     parser.add_argument("--valgrind", default="valgrind")
     options = parser.parse_args()
-    faults = []
+    score = Score()
     with tempfile.TemporaryDirectory() as folder:
-        plain = instructions(options, Path(folder), friction=False)
-        rough = instructions(options, Path(folder), friction=True)
-    total, kernel = sum(plain.values()), {name: count for name, count in plain.items() if KERNEL.search(name)}
-    named = sum(count for name, count in plain.items() if NAMED.search(name))
-    control = sum(count for name, count in rough.items() if KERNEL.search(name))
-    print(f"{total} instructions without friction; {named} in functions with friction in their name; "
-          f"with friction {sum(rough.values())}, {control} of them in the kernel of friction")
-    if total < 1e8:
-        faults.append("too few instructions were counted")
-    if kernel:
-        faults.append(f"friction was computed in a frictionless run: {kernel}")
-    if named > 1e-4 * total:
-        faults.append("more than a ten thousandth of the instructions have to do with friction")
-    if control < 1000:
-        faults.append("the control does not see friction where there is some")
-    print("\n".join(faults) or "ok")
-    return 1 if faults else 0
+        cases[options.case](score, options, Path(folder))
+    return score.status()
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ import yaml
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tests/scenes"), str(TOP / "tests/support")]
+import browser  # noqa: E402
 import hertz_cases  # noqa: E402
 from harness import Results, load_deck  # noqa: E402
 from score import Score  # noqa: E402
@@ -101,6 +102,30 @@ def study(case):
         path = case.study_file(case.hertz({"mesh": {"mesh.parameters.h": [0.2]}}, **limit), word.replace(" ", "_"))
         status, text = case.study(path, "--out", case.folder / word)
         case.expect(f"{word}: recorded", status == 0 and table_of(case.folder / word)[0]["outcome"] == word, text)
+
+
+def memory(case):
+    """One variant runs out of memory, as the system tells it: it is recorded as such, and the rest goes on."""
+    short = case.folder / "short_of_memory"
+    short.write_text(f"""#!/bin/bash
+# The program, but for meshes with h = 0.15: as if it asked for more than there is.
+deck=$1
+if [ "$deck" != check ] && [ "$deck" != schema ] && grep -q 'h: 0.15' "$deck"; then
+  echo "terminate called after throwing an instance of 'std::bad_alloc'" >&2
+  exit 134
+fi
+exec {case.program} "$@"
+""", encoding="utf-8")
+    short.chmod(0o755)
+    path = case.study_file(case.hertz({"mesh": {"mesh.parameters.h": [0.2, 0.15]}}))
+    status, text = case.run("study", path, "--program", short)
+    rows = {row["mesh.parameters.h"]: row for row in table_of(case.folder / "results/small_study")}
+    case.expect("the study ends with 0", status == 0, text)
+    case.expect("the variant is recorded, once, with what was said", rows["0.15"]["outcome"] == "out of memory"
+                and rows["0.15"]["runs"] == "1" and "bad_alloc" in rows["0.15"]["message"], rows["0.15"])
+    case.expect("the rest went on", rows["0.2"]["outcome"] == "certified" and rows["0.2"]["runs"] == "2", rows["0.2"])
+    words = (case.folder / "results/small_study/words.md").read_text(encoding="utf-8")
+    case.expect("the words name it", "h 0.15" in words.split("Not in the comparison")[-1], words)
 
 
 def bench(case):
@@ -362,10 +387,20 @@ def report(case):
     case.expect("no folder: status 2 and a message", status == 2 and "there is no folder" in text, text)
 
 
+def browsed(case):
+    """The page of a small run, as a browser without a window sees and prints it."""
+    deck = load_deck("hertz_2d")
+    deck["mesh"].update(file=str(TOP / "inputs/hertz_2d/hertz_2d.geo"), parameters={"h": 0.2, "overlap": 0.001})
+    path = case.folder / "hertz.yaml"
+    path.write_text(yaml.safe_dump(deck, sort_keys=False), encoding="utf-8")
+    run_deck(case, path)
+    browser.check_pages(case, case.folder / "hertz_run")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     cases = {"study": study, "resume": resume, "wrong_study": wrong_study, "effects": effects, "report": report,
-             "plan": plan, "wrong_plan": wrong_plan, "bench": bench}
+             "plan": plan, "wrong_plan": wrong_plan, "bench": bench, "memory": memory, "browser": browsed}
     parser.add_argument("case", choices=cases)
     parser.add_argument("--program", required=True)
     arguments = parser.parse_args()
