@@ -4,6 +4,7 @@
 #include "geometry/box_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace amontons {
@@ -30,6 +31,35 @@ double softest(const Scene& scene) {
   for (std::size_t b = 0; b < scene.mesh.bodies.size(); ++b)
     stiffness = std::min(stiffness, scene.bulk->stiffness(static_cast<std::int32_t>(b)));
   return stiffness;
+}
+
+template <class Holds>
+bool any_pair(const Deck& deck, Holds&& holds) {
+  return std::any_of(deck.contact.begin(), deck.contact.end(), holds);
+}
+
+/// What to change in the deck so that the item may pass; empty where there is no rule. Each is tried by
+/// tests/hard/advice.py on a scene that fails without it.
+std::string advice(const Certificate::Item& item, const Deck& deck) {
+  const bool is_overlap = item.name == "penetration" || item.name == "complementarity" || item.name == "missed_contact";
+  if (is_overlap && any_pair(deck, [](const auto& pair) { return std::holds_alternative<PenaltyDeck>(pair.enforce); }))
+    return formatted(
+        ". A penalty lets bodies overlap by pressure h / (alpha E), on any mesh: make alpha more than %.0f "
+        "times what it is, or take `enforce: {semismooth: {}}` or `{uzawa: {}}`, which leave no overlap. "
+        "(A nearly incompressible body that is held all around is much stiffer than its E.)",
+        std::ceil(item.value / item.tolerance));
+  if (item.name == "complementarity" || item.name == "penetration")
+    return ". Facets that are too large for the shapes and edges there do that: make both sides' smaller.";
+  if (item.name == "energy" &&
+      any_pair(deck, [](const auto& pair) { return std::holds_alternative<SlaveNormalDeck>(pair.projection); }))
+    return ". Forces along the slave's normal have no energy over inclined facets: take `projection: {closest_point: "
+           "{}}`.";
+  if ((item.name == "body_balance" || item.name == "moment_balance") && any_pair(deck, [](const auto& pair) {
+        return std::holds_alternative<ViDeck>(pair.enforce) || is_condensed(pair.enforce);
+      }))
+    return ". Forces of nodes (`vi`, `basis: dual`) across a gap that is not parallel leave a small couple: take "
+           "`enforce: {semismooth: {}}`, or smaller facets.";
+  return "";
 }
 
 } // namespace
@@ -106,14 +136,13 @@ nlohmann::ordered_json CertificateRecord::to_json() const {
   return json;
 }
 
-std::vector<std::string> CertificateRecord::failures() const {
+std::vector<std::string> CertificateRecord::failures(const Deck& deck) const {
   std::vector<std::string> lines;
   for (const auto& [item, time] : worst_) {
     if (item.passed) continue;
     lines.push_back(formatted("%s is %.3g at t = %g, allowed %.3g%s%s", item.name.c_str(), item.value, time,
                               item.tolerance, item.where.empty() ? "" : ": ", item.where.c_str()));
-    if (item.name == "complementarity" || item.name == "penetration")
-      lines.back() += ". Facets that are too large for the shapes and edges there do that: make both sides' smaller.";
+    lines.back() += advice(item, deck);
   }
   return lines;
 }

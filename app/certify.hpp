@@ -21,8 +21,8 @@ class CertificateRecord {
   bool add(const Certificate& certificate, double time);
   bool passed() const { return failed_increments_ == 0; }
   nlohmann::ordered_json to_json() const;
-  /// A sentence for each item that failed.
-  std::vector<std::string> failures() const;
+  /// What failed and what to do about it: a line for each item.
+  std::vector<std::string> failures(const Deck& deck) const;
 
  private:
   struct Worst {

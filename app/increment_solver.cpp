@@ -39,12 +39,12 @@ IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted
     bounded_ = std::make_unique<BoundedNewton>(*scene.problem, *scene.bounds, std::move(interrupted));
     return;
   }
+  chosen_rungs(); // a wrong name is found before anything is solved
   if (scene.conditions) {
     linear_solver_ = choose_linear_solver(*scene.problem);
     condensed_ = std::make_unique<CondensedNewton>(*scene.problem, *scene.conditions, std::move(interrupted));
     return;
   }
-  chosen_rungs(); // a wrong name is found before anything is solved
   // Full Newton steps go in circles where points switch between elastic and plastic.
   if (scene.bulk->wants_predictor()) default_option("-snes_linesearch_type", SNESLINESEARCHBT);
   linear_solver_ = choose_newton_solver(*scene.problem);
@@ -83,7 +83,7 @@ SolveOutcome IncrementSolver::solve(double target) {
   trouble_ = bounded_ ? bounded_->trouble() : condensed_ ? condensed_->trouble() : newton_->trouble();
   trouble_->solver = outcome.reason;
   outcome.reason = in_words(*trouble_);
-  if (!newton_) return outcome;
+  if (bounded_) return outcome;
   if (!ladder_) ladder_ = make_ladder();
   return ladder_->climb(unknowns_, outcome, *trouble_);
 }
@@ -121,7 +121,8 @@ std::unique_ptr<Ladder> IncrementSolver::make_ladder() {
     support->commit(state);
     return support;
   };
-  return std::make_unique<Ladder>(*scene_.problem, *newton_,
+  IncrementNewton& newton = condensed_ ? static_cast<IncrementNewton&>(*condensed_) : *newton_;
+  return std::make_unique<Ladder>(*scene_.problem, newton,
                                   Ladder::Hooks{.restart = restart,
                                                 .solve = [this] { return solve_plainly(); },
                                                 .make_support = make_support,

@@ -518,7 +518,7 @@ int Run::finish(int status, const std::string& reason) {
   judge_accuracy(status, summary);
   summary["resources"] = resources(comm_, now() - started_);
   write_summary(comm_, file("summary.json"), summary);
-  for (const auto& line : certificate_.failures())
+  for (const auto& line : certificate_.failures(scene_->deck))
     log_.line("  certificate: " + line);
   log_.line(formatted("%s after %d increments, %d Newton iterations, %.2f s", reason.c_str(), increments_,
                       newton_iterations_, now() - started_));

@@ -41,9 +41,100 @@ void add(std::array<double, 3>& sum, double factor, const std::array<double, 3>&
 
 } // namespace
 
+class CondensedContact::PairNodes : public Switching {
+ public:
+  PairNodes(CondensedContact& contact, std::size_t pair) : contact_(contact), pair_(pair) {
+    const auto& form = *contact.transform_.pairs()[pair];
+    const auto& mesh = contact.problem_.layout().mesh();
+    point_of_.assign(form.nodes().nodes.size(), none);
+    for (std::size_t place = 0; place < point_of_.size(); ++place)
+      if (form.nodes().nodes[place] < mesh.num_owned) {
+        point_of_[place] = places_.size();
+        places_.push_back(place);
+      }
+    held_pressure_.assign(places_.size(), 0.0);
+  }
+
+  const std::string& switch_name() const override { return form().pair().name; }
+  std::array<double, 3> switch_place(std::size_t point) const override {
+    return node_place(contact_.problem_.layout().mesh(), form().nodes().nodes[places_[point]]);
+  }
+  std::vector<std::uint8_t> branches() const override {
+    return of_nodes([this](const Node& node) {
+      if (!node.closed) return ContactStatus::Open;
+      const bool slips = !form().friction() || node.response.status == FrictionStatus::Slip;
+      return slips ? ContactStatus::Slip : ContactStatus::Stick;
+    });
+  }
+  void hold(std::vector<Hold> holds) override { holds_ = std::move(holds); }
+  std::vector<std::uint8_t> wanted() const override {
+    return of_nodes([](const Node& node) { return node.wanted; });
+  }
+  bool has_limits() const override { return form().friction() != nullptr; }
+  void hold_limits() override {
+    limits_are_held_ = true;
+    for (const auto& node : contact_.nodes_)
+      if (node.pair == pair_)
+        held_pressure_[point_of_[node.place]] = node.closed ? -normal_traction(node.augmented) : 0.0;
+  }
+  void release_limits() override { limits_are_held_ = false; }
+  void scale_augmentation(double factor) override { augmentation_ = factor; }
+
+  Hold hold(const Node& node) const { return holds_.empty() ? Hold::Free : holds_[point_of_[node.place]]; }
+  double augmentation() const { return augmentation_; }
+  bool limits_are_held() const { return limits_are_held_; }
+  /// Pressure that bounds friction.
+  double bounding_pressure(const Node& node) const {
+    return limits_are_held_ ? held_pressure_[point_of_[node.place]] : -normal_traction(node.augmented);
+  }
+
+ private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  const MortarForm& form() const { return *contact_.transform_.pairs()[pair_]; }
+  template <class Value>
+  std::vector<std::uint8_t> of_nodes(Value&& value) const {
+    std::vector<std::uint8_t> values(places_.size(), std::uint8_t(0));
+    for (const auto& node : contact_.nodes_)
+      if (node.pair == pair_) values[point_of_[node.place]] = static_cast<std::uint8_t>(value(node));
+    return values;
+  }
+
+  CondensedContact& contact_;
+  std::size_t pair_;
+  std::vector<std::size_t> places_, point_of_; // of points (nodes of this rank) in nodes() of the pair, and back
+  std::vector<Hold> holds_;
+  std::vector<double> held_pressure_; // per point
+  bool limits_are_held_ = false;
+  double augmentation_ = 1.0;
+};
+
+CondensedContact::~CondensedContact() = default;
+
 CondensedContact::CondensedContact(const Problem& problem, const std::vector<MortarForm*>& pairs)
     : problem_(problem), transform_(problem, pairs) {
   collect_nodes();
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    switching_.push_back(std::make_unique<PairNodes>(*this, p));
+}
+
+std::vector<Switching*> CondensedContact::switching() {
+  std::vector<Switching*> all;
+  for (const auto& nodes : switching_)
+    all.push_back(nodes.get());
+  return all;
+}
+
+double CondensedContact::epsilon(const Node& node) const {
+  return switching_[node.pair]->augmentation() * constraint(node).epsilon;
+}
+
+/// A node held closed stays where it touches even if that takes tension; its friction then has no limit to bear on.
+void CondensedContact::apply_holds() {
+  for (auto& node : nodes_) {
+    node.wanted = node.closed;
+    const auto hold = switching_[node.pair]->hold(node);
+    if (hold != Switching::Hold::Free) node.closed = hold == Switching::Hold::On;
+  }
 }
 
 void CondensedContact::collect_nodes() {
@@ -71,6 +162,7 @@ void CondensedContact::evaluate(Vec changed, Vec forces, Evaluation evaluation, 
     const VecReader motions(changed), out_of_balance(forces);
     find_normal_part(motions, out_of_balance);
     if (evaluation == Evaluation::FirstGuess) guess_contact();
+    apply_holds();
     for (auto& node : nodes_)
       if (pair(node).friction()) find_tangential_part(node, motions, out_of_balance, evaluation);
   }
@@ -90,7 +182,7 @@ void CondensedContact::find_normal_part(const VecReader& changed, const VecReade
     const PetscInt host = node.first + frame.host;
     node.motion = changed[host] - lower[host];
     const double lambda = -forces[host] / (constraint.weight * frame.length);
-    node.augmented = augmented_traction(lambda, constraint.epsilon, gap(node));
+    node.augmented = augmented_traction(lambda, epsilon(node), gap(node));
     node.closed = normal_traction_derivative(node.augmented) > 0.0;
   }
 }
@@ -128,19 +220,19 @@ void CondensedContact::find_tangential_part(Node& node, const VecReader& changed
   for (int c = 0; c < problem_.layout().dim(); ++c) {
     if (!frame.is_free[c] || c == frame.host) continue;
     const auto axis = frame.axis(c);
-    add(node.trial, -forces[node.first + c] / constraint.weight + constraint.epsilon * dot(axis, motion), axis);
+    add(node.trial, -forces[node.first + c] / constraint.weight + epsilon(node) * dot(axis, motion), axis);
   }
-  const double pressure = -normal_traction(node.augmented);
+  const double pressure = switching_[node.pair]->bounding_pressure(node);
   node.response = evaluation == Evaluation::FirstGuess
-                      ? friction.guess(node.place, node.trial, pressure, constraint.epsilon)
-                      : friction.respond(node.place, node.trial, pressure, constraint.epsilon);
+                      ? friction.guess(node.place, node.trial, pressure, epsilon(node))
+                      : friction.respond(node.place, node.trial, pressure, epsilon(node));
 }
 
 void CondensedContact::set_residual(const Node& node, Vec residual) const {
   const auto& frame = this->frame(node);
   const auto& constraint = this->constraint(node);
   VecArray values(residual);
-  values[node.first + frame.host] = constraint.weight * constraint.epsilon * frame.length * gap(node);
+  values[node.first + frame.host] = constraint.weight * epsilon(node) * frame.length * gap(node);
   if (!pair(node).friction()) return;
   for (int c = 0; c < problem_.layout().dim(); ++c)
     if (frame.is_free[c] && c != frame.host)
@@ -150,7 +242,7 @@ void CondensedContact::set_residual(const Node& node, Vec residual) const {
 ConditionRows CondensedContact::rows_of(const Node& node) const {
   const auto& frame = this->frame(node);
   const auto& constraint = this->constraint(node);
-  const double stiffness = constraint.weight * constraint.epsilon * constraint.leverage();
+  const double stiffness = constraint.weight * epsilon(node) * constraint.leverage();
   const int dim = problem_.layout().dim(), h = frame.host;
   ConditionRows rows{.size = dim};
   for (int r = 0; r < dim; ++r) {
@@ -161,10 +253,11 @@ ConditionRows CondensedContact::rows_of(const Node& node) const {
   rows.motion[h][h] = stiffness * frame.length * frame.length;
   if (!pair(node).friction()) return rows;
   const auto& derivative = node.response;
+  const bool follows_pressure = node.augmented < 0.0 && !switching_[node.pair]->limits_are_held();
   for (int r = 0; r < dim; ++r) {
     if (!frame.is_free[r] || r == h) continue;
     const auto row = frame.axis(r);
-    const double by_pressure = dot(row, derivative.dtraction_dp);
+    const double by_pressure = follows_pressure ? dot(row, derivative.dtraction_dp) : 0.0;
     rows.forces[r][h] = by_pressure / frame.length;
     rows.motion[r][h] = -by_pressure * stiffness * frame.length;
     for (int c = 0; c < dim; ++c) {

@@ -108,6 +108,28 @@ void MortarTransform::leave_out_nodes() {
   });
 }
 
+std::array<double, 3> node_place(const Mesh& mesh, std::int32_t node) {
+  std::array<double, 3> place{};
+  std::ranges::copy(mesh.position(node), place.begin());
+  return place;
+}
+
+std::vector<MortarTransform::Set> MortarTransform::sets() const {
+  const auto& mesh = layout_.mesh();
+  std::vector<Set> sets;
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    auto& set = sets.emplace_back(Set{.name = pairs_[p]->pair().name, .places = {}, .unknowns = {}});
+    for (std::size_t i = 0; i < frames_[p].size(); ++i) {
+      const auto node = pairs_[p]->nodes().nodes[i];
+      if (node >= mesh.num_owned) continue;
+      const auto& frame = frames_[p][i];
+      set.places.push_back(node_place(mesh, node));
+      set.unknowns.push_back(frame.bounded ? PetscInt(node) * dim_ + frame.host : -1);
+    }
+  }
+  return sets;
+}
+
 /// Throws: no node of the facet can have a multiplier of this pair.
 void MortarTransform::refuse_facet(const MortarForm& pair, std::int32_t facet,
                                    const std::vector<const MortarForm*>& owners) const {

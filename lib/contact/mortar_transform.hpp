@@ -26,6 +26,9 @@ struct NodeFrame {
   std::array<double, 3> axis(int component) const;
 };
 
+/// Reference position of a node, in the plane with a third component of zero.
+std::array<double, 3> node_place(const Mesh& mesh, std::int32_t node);
+
 class MortarTransform : public BoundedUnknowns {
  public:
   /// The forms belong to the problem, which must outlive this object. Leaves out slave nodes whose support hides the
@@ -36,6 +39,7 @@ class MortarTransform : public BoundedUnknowns {
   bool update(double time) override;
   Mat transform() const override { return transform_; }
   Mat inverse() const override { return inverse_; }
+  std::vector<Set> sets() const override;
   Vec lower() const override { return lower_; }
   void hold_forces(Vec forces) override;
   void release() override;

@@ -5,6 +5,10 @@
 
 #include "form/form.hpp"
 
+#include <array>
+#include <string>
+#include <vector>
+
 namespace amontons {
 
 class BoundedUnknowns {
@@ -20,6 +24,13 @@ class BoundedUnknowns {
   /// T and its inverse, as of the last update. A prescribed displacement is the same unknown in u and û.
   virtual Mat transform() const = 0;
   virtual Mat inverse() const = 0;
+  /// The nodes of this rank that may have bounds, pair by pair, in an order that does not change.
+  struct Set {
+    std::string name;                          // of the contact pair
+    std::vector<std::array<double, 3>> places; // in the reference configuration
+    std::vector<PetscInt> unknowns;            // numbers of this rank as of the last update; -1: no bound now
+  };
+  virtual std::vector<Set> sets() const = 0;
   /// û >= lower: length; PETSC_NINFINITY where there is no bound.
   virtual Vec lower() const = 0;
   /// Gives the contact forms the force on each bound (a vector like û, >= 0, zero where there is no bound or where it

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "form/form.hpp"
+#include "form/switching.hpp"
 
 #include <array>
 #include <span>
@@ -47,6 +48,9 @@ class CondensedUnknowns {
   /// Gives the contact forms the tractions of the last evaluation to hold from now on; then the residual at u is that
   /// of equilibrium, contact included. Collective.
   virtual void hold() = 0;
+  /// The conditions, pair by pair, as points with branches: what the last evaluation made of them, and to be held in
+  /// the next. They live as long as this object.
+  virtual std::vector<Switching*> switching() = 0;
 };
 
 } // namespace amontons

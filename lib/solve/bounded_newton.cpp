@@ -42,7 +42,7 @@ BoundedNewton::BoundedNewton(Problem& problem, BoundedUnknowns& bounds, std::fun
     : problem_(problem), bounds_(bounds), interrupted_(std::move(interrupted)), whole_(problem),
       changed_(problem.layout().new_vector()), residual_(problem.layout().new_vector()),
       changed_residual_(problem.layout().new_vector()), upper_(problem.layout().new_vector()),
-      forces_(problem.layout().new_vector()) {
+      forces_(problem.layout().new_vector()), sets_(bounds.sets()), course_(problem.comm(), bounded_points()) {
   AMT_PETSC(VecSet(upper_, PETSC_INFINITY));
   AMT_PETSC(PetscOptionsGetInt(nullptr, nullptr, "-vi_free_iterations", &free_iterations_, nullptr));
   AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
@@ -90,7 +90,12 @@ PetscErrorCode BoundedNewton::test_convergence(SNES snes, PetscInt iteration, Pe
   auto& newton = *static_cast<BoundedNewton*>(self);
   return guarded(newton.kept_, [&] {
     *reason = judge_residual(snes, newton.problem_, iteration, norm);
-    if (newton.interrupted_ && newton.interrupted_()) *reason = SNES_BREAKOUT_INNER_ITER;
+    // Full steps may go through a cycle; what counts is whether steps that must lower the energy still get on.
+    if (iteration >= newton.free_iterations_) newton.course_.observe(relative_to_forces(norm, newton.problem_));
+    if (newton.interrupted_ && newton.interrupted_())
+      *reason = SNES_BREAKOUT_INNER_ITER;
+    else if (*reason == SNES_CONVERGED_ITERATING && newton.course_.repeats_itself())
+      *reason = SNES_DIVERGED_LOCAL_MIN;
   });
 }
 
@@ -161,11 +166,32 @@ Vec BoundedNewton::contact_forces() {
   return forces_;
 }
 
+std::vector<WatchedPoints> BoundedNewton::bounded_points() {
+  std::vector<WatchedPoints> points;
+  for (std::size_t set = 0; set < sets_.size(); ++set)
+    points.push_back({.name = sets_[set].name,
+                      .branches = [this, set] { return touching(set); },
+                      .place = [this, set](std::size_t point) { return sets_[set].places[point]; }});
+  return points;
+}
+
+/// Bounds that the iterate is on and pressed against, which is what SNESVI takes for active.
+std::vector<std::uint8_t> BoundedNewton::touching(std::size_t set) const {
+  const auto& unknowns = sets_[set].unknowns;
+  std::vector<std::uint8_t> touching(unknowns.size(), std::uint8_t(0));
+  if (!bounds_.lower()) return touching; // before the first solve
+  const VecReader values(changed_), lower(bounds_.lower()), residual(changed_residual_);
+  for (std::size_t i = 0; i < unknowns.size(); ++i)
+    if (const PetscInt u = unknowns[i]; u >= 0) touching[i] = values[u] <= lower[u] && residual[u] > 0.0;
+  return touching;
+}
+
 Trouble BoundedNewton::trouble() {
   const auto outcome = outcome_of(snes_, problem_);
   Trouble trouble;
   trouble.solver = outcome.reason;
   trouble.residual = outcome.residual;
+  course_.describe(trouble);
   const auto held = problem_.layout().new_vector();
   if (whole_.residual(changed_, changed_residual_)) {
     VecArray marks(held);
@@ -179,10 +205,12 @@ Trouble BoundedNewton::trouble() {
 
 SolveOutcome BoundedNewton::solve(Vec unknowns) {
   kept_ = nullptr;
+  course_.clear();
   const Phase phase("linear solver");
   bounds_.release();
   const bool moved = bounds_.update(problem_.time()) || !whole_.has_transform();
   if (moved) {
+    sets_ = bounds_.sets();
     whole_.take_transform(bounds_.transform(), bounds_.inverse());
     if (preconditioner_) preconditioner_->take_modes(whole_.modes());
   }
@@ -202,7 +230,7 @@ SolveOutcome BoundedNewton::solve(Vec unknowns) {
   problem_.residual(unknowns, residual_);
   double norm = 0.0;
   AMT_PETSC(VecNorm(residual_, NORM_2, &norm));
-  outcome.residual = problem_.force_scale() > 0.0 ? norm / problem_.force_scale() : 0.0;
+  outcome.residual = relative_to_forces(norm, problem_);
   return outcome;
 }
 

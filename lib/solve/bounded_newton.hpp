@@ -39,6 +39,8 @@ class BoundedNewton {
   void take_matrix();
   void start_from(Vec unknowns);
   Vec contact_forces();
+  std::vector<WatchedPoints> bounded_points();
+  std::vector<std::uint8_t> touching(std::size_t set) const;
 
   Problem& problem_;
   BoundedUnknowns& bounds_;
@@ -48,6 +50,8 @@ class BoundedNewton {
   MatHandle given_tangent_; // a copy of the tangent for the semismooth method, which scales it in place
   VecHandle changed_, residual_, changed_residual_, upper_, forces_;
   std::unique_ptr<WholePreconditioner> preconditioner_;
+  std::vector<BoundedUnknowns::Set> sets_; // as of the last update
+  SolveCourse course_;                     // of the running solve, from the first step that must lower the energy on
   std::exception_ptr kept_;
   /// Iterations that take their full step without asking whether the energy falls (-vi_free_iterations): nearly all
   /// solves end within them.

@@ -28,15 +28,16 @@ std::vector<PetscInt> replaced_equations(std::span<const ConditionRows> all) {
 
 CondensedNewton::CondensedNewton(Problem& problem, CondensedUnknowns& conditions, std::function<bool()> interrupted)
     : problem_(problem), conditions_(conditions), interrupted_(std::move(interrupted)), whole_(problem),
-      changed_(problem.layout().new_vector()), forces_(problem.layout().new_vector()),
-      residual_(problem.layout().new_vector()), given_residual_(problem.layout().new_vector()),
-      guessed_residual_(problem.layout().new_vector()) {
+      course_(problem.comm(), watched(conditions.switching())), changed_(problem.layout().new_vector()),
+      forces_(problem.layout().new_vector()), residual_(problem.layout().new_vector()),
+      given_residual_(problem.layout().new_vector()), guessed_residual_(problem.layout().new_vector()) {
   AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
   AMT_PETSC(SNESSetFunction(snes_, residual_, evaluate_residual, this));
   AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
   AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
   decrease_ = decrease_asked_for(snes_);
+  chosen_search_ = chosen_line_search(snes_);
   KSP ksp = nullptr;
   AMT_PETSC(SNESGetKSP(snes_, &ksp));
   AMT_PETSC(KSPSetPreSolve(ksp, before_linear_solve, this));
@@ -189,7 +190,11 @@ PetscErrorCode CondensedNewton::test_convergence(SNES snes, PetscInt iteration, 
   auto& newton = *static_cast<CondensedNewton*>(self);
   return guarded(newton.kept_, [&] {
     *reason = judge_residual(snes, newton.problem_, iteration, norm);
-    if (newton.interrupted_ && newton.interrupted_()) *reason = SNES_BREAKOUT_INNER_ITER;
+    newton.course_.observe(relative_to_forces(norm, newton.problem_));
+    if (newton.interrupted_ && newton.interrupted_())
+      *reason = SNES_BREAKOUT_INNER_ITER;
+    else if (*reason == SNES_CONVERGED_ITERATING && newton.course_.repeats_itself())
+      *reason = SNES_DIVERGED_LOCAL_MIN;
   });
 }
 
@@ -198,6 +203,7 @@ Trouble CondensedNewton::trouble() {
   Trouble trouble;
   trouble.solver = outcome.reason;
   trouble.residual = outcome.residual;
+  course_.describe(trouble);
   const auto held = problem_.layout().new_vector();
   {
     VecArray marks(held);
@@ -213,6 +219,7 @@ Trouble CondensedNewton::trouble() {
 SolveOutcome CondensedNewton::solve(Vec unknowns) {
   const Phase phase("linear solver");
   factorizations_ = 0;
+  course_.clear();
   evaluation_ = Evaluation::FirstGuess;
   start(unknowns);
   whole_.tangent_at(unknowns);
@@ -224,6 +231,22 @@ SolveOutcome CondensedNewton::solve(Vec unknowns) {
   outcome.factorizations = factorizations_;
   if (outcome.converged) finish(unknowns);
   return outcome;
+}
+
+void CondensedNewton::set_steps(const StepLength& steps) {
+  if (std::holds_alternative<ChosenSteps>(steps))
+    choose_line_search(snes_, chosen_search_);
+  else
+    search_residual(snes_, chosen_search_);
+  ask_for_decrease(snes_, decrease_);
+}
+
+double CondensedNewton::imbalance(Vec unknowns) {
+  start(unknowns);
+  double norm = 0.0;
+  find_residual(changed_, Evaluation::True, residual_);
+  AMT_PETSC(VecNorm(residual_, NORM_2, &norm));
+  return relative_to_forces(norm, problem_);
 }
 
 void CondensedNewton::recover(Vec unknowns) {

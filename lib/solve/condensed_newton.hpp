@@ -11,14 +11,20 @@
 
 namespace amontons {
 
-class CondensedNewton {
+class CondensedNewton : public IncrementNewton {
  public:
   /// Call choose_linear_solver first. `interrupted` is asked at every iteration and must be the same on every rank.
   /// Collective.
   CondensedNewton(Problem& problem, CondensedUnknowns& conditions, std::function<bool()> interrupted);
 
   /// From the state in `unknowns` (prescribed values already in place) to equilibrium. Collective.
-  SolveOutcome solve(Vec unknowns);
+  SolveOutcome solve(Vec unknowns) override;
+  /// The merit function is |F|² where steps are not shortened otherwise, else |K⁻¹ F|, as for Newton.
+  void set_steps(const StepLength& steps) override;
+  double imbalance(Vec unknowns) override;
+  std::vector<Switching*> switching() const override { return conditions_.switching(); }
+  const StatusWatch& watch() const override { return course_.watch(); }
+
   /// What the last solve, which failed, came to, and the bodies that neither supports nor closed contact hold then.
   /// Collective.
   Trouble trouble();
@@ -47,6 +53,8 @@ class CondensedNewton {
   std::function<bool()> interrupted_;
   ChangedProblem whole_;
   SnesHandle snes_;
+  SolveCourse course_; // of the running solve
+  std::string chosen_search_;
   MatHandle matrix_; // Tᵀ K T with the rows of conditions
   bool is_assembled_ = false;
   VecHandle changed_, forces_, residual_;

@@ -91,9 +91,9 @@ std::set<std::size_t> chosen_rungs() {
   return chosen;
 }
 
-Ladder::Ladder(Problem& problem, Newton& newton, Hooks hooks)
-    : problem_(problem), newton_(newton), hooks_(std::move(hooks)), forms_(problem.switching()),
-      chosen_(chosen_rungs()), uses_(remedies().size()) {}
+Ladder::Ladder(Problem& problem, IncrementNewton& newton, Hooks hooks)
+    : problem_(problem), newton_(newton), hooks_(std::move(hooks)), forms_(newton.switching()), chosen_(chosen_rungs()),
+      uses_(remedies().size()) {}
 
 bool Ladder::applies(const Remedy& remedy, const Trouble& trouble) const {
   if (std::holds_alternative<HeldPoints>(remedy))
@@ -152,15 +152,6 @@ SolveOutcome Ladder::use(MeritSearch, Vec) {
   return hooks_.solve();
 }
 
-/// Residual at the unknowns, relative to the forces in play. Collective.
-double Ladder::imbalance(Vec unknowns) {
-  const auto residual = problem_.layout().new_vector();
-  problem_.residual(unknowns, residual);
-  double norm = 0.0;
-  AMT_PETSC(VecNorm(residual, NORM_2, &norm));
-  return problem_.force_scale() > 0.0 ? norm / problem_.force_scale() : 0.0;
-}
-
 /// Solves with points held until none of them wants to be elsewhere.
 SolveOutcome Ladder::pivot(Vec unknowns) {
   using Hold = Switching::Hold;
@@ -199,7 +190,7 @@ SolveOutcome Ladder::pivot(Vec unknowns) {
 }
 
 SolveOutcome Ladder::use(HeldPoints, Vec unknowns) {
-  imbalance(unknowns); // evaluates the branches at the start
+  newton_.imbalance(unknowns); // evaluates the branches at the start
   Effort effort;
   if (effort.add(pivot(unknowns)).converged) effort.add(hooks_.solve());
   return effort.total();
@@ -211,7 +202,7 @@ SolveOutcome Ladder::use(LaggedLimits, Vec unknowns) {
     for (auto* form : forms_)
       form->release_limits();
   };
-  for (int lag = 0; lag < most_lags && (imbalance(unknowns) > lagged_enough || lag == 0); ++lag) {
+  for (int lag = 0; lag < most_lags && (newton_.imbalance(unknowns) > lagged_enough || lag == 0); ++lag) {
     for (auto* form : forms_)
       form->hold_limits();
     const AtEnd let_go(release);

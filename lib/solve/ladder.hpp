@@ -5,7 +5,9 @@
 // trouble never comes here.
 #pragma once
 
-#include "solve/newton.hpp"
+#include "form/problem.hpp"
+#include "solve/increment_newton.hpp"
+#include "solve/trouble.hpp"
 
 #include <array>
 #include <functional>
@@ -55,7 +57,7 @@ class Ladder {
     /// Told of every rung tried and how it went.
     std::function<void(const std::string&)> tell;
   };
-  Ladder(Problem& problem, Newton& newton, Hooks hooks);
+  Ladder(Problem& problem, IncrementNewton& newton, Hooks hooks);
 
   /// Tries the rungs that apply, until one converges or none is left, after a solve that failed with this outcome.
   /// A rung that fails is not tried again until release_rungs(). The outcome has the effort of all, and of a failure
@@ -84,10 +86,9 @@ class Ladder {
   SolveOutcome use(SofterAugmentation, Vec unknowns);
   SolveOutcome use(VanishingSupport, Vec unknowns);
   SolveOutcome pivot(Vec unknowns);
-  double imbalance(Vec unknowns);
 
   Problem& problem_;
-  Newton& newton_;
+  IncrementNewton& newton_;
   Hooks hooks_;
   std::vector<Switching*> forms_;
   Marks on_and_off_; // of the solve that failed

@@ -196,6 +196,31 @@ PetscReal decrease_asked_for(SNES snes) {
   return alpha;
 }
 
+std::string chosen_line_search(SNES snes) {
+  SNESLineSearch search = nullptr;
+  SNESLineSearchType type = nullptr;
+  AMT_PETSC(SNESGetLineSearch(snes, &search));
+  AMT_PETSC(SNESLineSearchGetType(search, &type));
+  return type ? type : "";
+}
+
+void choose_line_search(SNES snes, const std::string& type) {
+  SNESLineSearch search = nullptr;
+  AMT_PETSC(SNESGetLineSearch(snes, &search));
+  AMT_PETSC(SNESLineSearchSetType(search, type.c_str()));
+  AMT_PETSC(SNESLineSearchSetFromOptions(search));
+}
+
+void search_residual(SNES snes, const std::string& chosen) {
+  SNESLineSearch search = nullptr;
+  AMT_PETSC(SNESGetLineSearch(snes, &search));
+  AMT_PETSC(SNESLineSearchSetType(search, chosen == SNESLINESEARCHBT ? SNESLINESEARCHNLEQERR : SNESLINESEARCHBT));
+}
+
+double relative_to_forces(double norm, const Problem& problem) {
+  return problem.force_scale() > 0.0 ? norm / problem.force_scale() : 0.0;
+}
+
 SolveOutcome outcome_of(SNES snes, const Problem& problem) {
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscInt newton = 0, linear = 0;
@@ -210,8 +235,7 @@ SolveOutcome outcome_of(SNES snes, const Problem& problem) {
   outcome.converged = reason > 0 && !outcome.interrupted;
   outcome.newton = static_cast<int>(newton);
   outcome.linear = static_cast<int>(linear);
-  const double scale = problem.force_scale();
-  outcome.residual = scale > 0.0 ? norm / scale : 0.0;
+  outcome.residual = relative_to_forces(norm, problem);
   outcome.reason = outcome.converged ? "converged" : in_words(reason, outcome.residual);
   if (!outcome.converged && !problem.failure().empty()) outcome.reason = problem.failure();
   return outcome;
@@ -221,7 +245,7 @@ Newton::~Newton() = default;
 
 Newton::Newton(Problem& problem, std::function<bool()> interrupted)
     : problem_(problem), interrupted_(std::move(interrupted)), matrix_(problem.new_matrix()),
-      residual_(problem.layout().new_vector()), watch_(problem) {
+      residual_(problem.layout().new_vector()), course_(problem.comm(), watched(problem.switching())) {
   AMT_PETSC(SNESCreate(problem.comm(), snes_.put()));
   AMT_PETSC(SNESSetFunction(snes_, residual_, evaluate_residual, this));
   AMT_PETSC(SNESSetJacobian(snes_, matrix_, matrix_, evaluate_tangent, this));
@@ -231,11 +255,7 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
   sufficient_decrease_ = decrease_asked_for(snes_);
-  SNESLineSearch search = nullptr;
-  SNESLineSearchType type = nullptr;
-  AMT_PETSC(SNESGetLineSearch(snes_, &search));
-  AMT_PETSC(SNESLineSearchGetType(search, &type));
-  if (type) chosen_search_ = type;
+  chosen_search_ = chosen_line_search(snes_);
   if (PreconditionerLag::applies_to(snes_)) lag_.emplace();
   if (KeptFactorization::is_asked_for(snes_)) kept_factorization_ = std::make_unique<KeptFactorization>(problem, snes_);
   if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
@@ -245,16 +265,21 @@ void Newton::set_steps(const StepLength& steps) {
   SNESLineSearch search = nullptr;
   AMT_PETSC(SNESGetLineSearch(snes_, &search));
   if (std::holds_alternative<ChosenSteps>(steps)) {
-    AMT_PETSC(SNESLineSearchSetType(search, chosen_search_.c_str()));
-    AMT_PETSC(SNESLineSearchSetFromOptions(search));
+    choose_line_search(snes_, chosen_search_);
   } else if (problem_.tangent_is_symmetric() && problem_.layout().num_extra() == 0) {
     AMT_PETSC(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
     AMT_PETSC(SNESLineSearchShellSetUserFunc(search, search_energy, this));
   } else {
-    AMT_PETSC(
-        SNESLineSearchSetType(search, chosen_search_ == SNESLINESEARCHBT ? SNESLINESEARCHNLEQERR : SNESLINESEARCHBT));
+    search_residual(snes_, chosen_search_);
   }
   ask_for_decrease(snes_, sufficient_decrease_);
+}
+
+double Newton::imbalance(Vec unknowns) {
+  double norm = 0.0;
+  problem_.residual(unknowns, residual_);
+  AMT_PETSC(VecNorm(residual_, NORM_2, &norm));
+  return relative_to_forces(norm, problem_);
 }
 
 PetscErrorCode Newton::search_energy(SNESLineSearch search, void* self) {
@@ -289,13 +314,13 @@ PetscErrorCode Newton::test_convergence(SNES snes, PetscInt iteration, PetscReal
   auto& newton = *static_cast<Newton*>(self);
   return guarded(newton.kept_, [&] {
     *reason = judge_residual(snes, newton.problem_, iteration, norm);
-    newton.observe(norm);
+    newton.course_.observe(relative_to_forces(norm, newton.problem_));
     if (iteration == 0) newton.first_norm_ = norm;
     if (*reason == SNES_CONVERGED_ITERATING && norm <= newton.reduction_ * newton.first_norm_)
       *reason = SNES_CONVERGED_FNORM_RELATIVE;
     if (newton.interrupted_ && newton.interrupted_())
       *reason = SNES_BREAKOUT_INNER_ITER;
-    else if (*reason == SNES_CONVERGED_ITERATING && (newton.record_.cycle() > 0 || newton.record_.rests()))
+    else if (*reason == SNES_CONVERGED_ITERATING && newton.course_.repeats_itself())
       *reason = SNES_DIVERGED_LOCAL_MIN;
     else if (*reason > 0 && iteration < newton.least_iterations_ && norm > 1e-15 * newton.problem_.force_scale())
       *reason = SNES_CONVERGED_ITERATING;
@@ -318,29 +343,12 @@ void Newton::limit_linear_solve(double norm) {
   AMT_PETSC(KSPSetTolerances(ksp, PETSC_DEFAULT, margin * std::min(goal, 0.1 * norm), PETSC_DEFAULT, PETSC_DEFAULT));
 }
 
-void Newton::observe(double norm) {
-  const auto look = watch_.look();
-  const double scale = problem_.force_scale();
-  record_.add({.pattern = look.pattern, .changed = look.changed, .residual = scale > 0.0 ? norm / scale : 0.0});
-}
-
 Trouble Newton::trouble() const {
-  constexpr std::size_t most_named = 3;
   const auto outcome = outcome_of(snes_, problem_);
   Trouble trouble;
   trouble.solver = outcome.reason;
-  trouble.cycle = record_.cycle();
-  trouble.rests = record_.rests();
   trouble.residual = outcome.residual;
-  trouble.largest_change = record_.largest_change();
-  if (watch_.has_points()) {
-    const std::size_t looks = trouble.rests       ? 1
-                              : trouble.cycle > 0 ? static_cast<std::size_t>(trouble.cycle) + 1
-                                                  : StatusWatch::most_looks;
-    const auto named = watch_.name(watch_.flipping(looks, StatusWatch::Flip::Branch), most_named);
-    trouble.num_flipping = named.count;
-    trouble.points = named.first;
-  }
+  course_.describe(trouble);
   trouble.free = find_free_motions(problem_, matrix_);
   return trouble;
 }
@@ -407,8 +415,7 @@ bool Newton::solve_linearized(Vec unknowns, Vec load, Vec result) {
 
 SolveOutcome Newton::solve(Vec unknowns) {
   factorizations_ = 0;
-  record_.clear();
-  watch_.clear();
+  course_.clear();
   kept_ = nullptr;
   if (kept_factorization_) kept_factorization_->begin();
   const Phase phase("linear solver"); // the phases of forms inside stop this clock

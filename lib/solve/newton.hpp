@@ -4,34 +4,19 @@
 #pragma once
 
 #include "form/problem.hpp"
-#include "solve/iteration_record.hpp"
+#include "solve/increment_newton.hpp"
 #include "solve/preconditioner_lag.hpp"
+#include "solve/solve_course.hpp"
 #include "solve/trouble.hpp"
 
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 
 namespace amontons {
 
 class KeptFactorization;
-
-/// How a solve went. Not converging is an outcome, not an exception.
-struct SolveOutcome {
-  bool converged = false;
-  int newton = 0;         // iterations
-  int linear = 0;         // Krylov iterations (1 a solve with a direct solver)
-  int outer = 0;          // Uzawa iterations, 0 without multipliers to update
-  int factorizations = 0; // or preconditioner set-ups
-  double residual = 0.0;  // out-of-balance force relative to the force scale
-  std::string reason;     // in words
-  bool interrupted = false;
-  int rung = 0; // of the ladder of remedies that it took, counted from 1; 0: none
-  /// Adds the effort of another solve.
-  void add_effort(const SolveOutcome& other);
-};
 
 /// Sets a PETSc option unless the user has set it already.
 void default_option(const std::string& name, const std::string& value);
@@ -61,21 +46,25 @@ void ask_for_decrease(SNES snes, PetscReal alpha);
 /// That alpha as the options have it.
 PetscReal decrease_asked_for(SNES snes);
 
+/// The line search that a SNES has, by its name in PETSc, and another one, tuned by the options.
+std::string chosen_line_search(SNES snes);
+void choose_line_search(SNES snes, const std::string& type);
+/// Steps that a merit function of the residual shortens: |F|² where steps are not shortened otherwise, and |K⁻¹ F|, the
+/// natural one (P. Deuflhard, Newton Methods for Nonlinear Problems (2004), 3.3), where |F|² is in use already.
+void search_residual(SNES snes, const std::string& chosen);
+
+/// Residual norm relative to the forces in play; zero without any.
+double relative_to_forces(double norm, const Problem& problem);
+
 /// How a finished SNES went, without outer iterations and factorizations.
 SolveOutcome outcome_of(SNES snes, const Problem& problem);
 
-/// How long steps are: as chosen by the options, or shortened until a merit function falls, the one that suits the
-/// problem.
-struct ChosenSteps {};
-struct MeritSteps {};
-using StepLength = std::variant<ChosenSteps, MeritSteps>;
-
-class Newton {
+class Newton : public IncrementNewton {
  public:
   /// Call choose_linear_solver first. `interrupted` is asked at every iteration and must be the same on every rank.
   /// Collective.
   Newton(Problem& problem, std::function<bool()> interrupted);
-  ~Newton();
+  ~Newton() override;
 
   /// Iterate at least this often unless the residual is rounding: for a loop around that wants more accuracy than the
   /// tolerance and pays only a back-substitution for it.
@@ -85,20 +74,21 @@ class Newton {
   void set_reduction(double reduction) { reduction_ = reduction; }
 
   /// From the state in `unknowns` (prescribed values already in place) to equilibrium. Collective.
-  SolveOutcome solve(Vec unknowns);
+  SolveOutcome solve(Vec unknowns) override;
 
   /// For the next solves. The merit function is the energy where there is one whose minimum is sought (symmetric
   /// tangent, displacements only), by an exact search, for which Newton's method converges from anywhere if the energy
-  /// is convex; |F|² where steps are not shortened otherwise; and |K⁻¹ F|, the natural one (P. Deuflhard, Newton
-  /// Methods for Nonlinear Problems (2004), 3.3), where |F|² is in use already.
-  void set_steps(const StepLength& steps);
+  /// is convex; else as search_residual().
+  void set_steps(const StepLength& steps) override;
+  double imbalance(Vec unknowns) override;
   /// Displacements under `load` (zero in prescribed equations) in the problem linearised at `unknowns`; for problems
   /// with a symmetric tangent. A back-substitution where a factorization is at hand. False if the linear solver
   /// failed. Collective.
   bool solve_linearized(Vec unknowns, Vec load, Vec result);
   /// What went on in the last solve, which did not converge. Collective.
   Trouble trouble() const;
-  const StatusWatch& watch() const { return watch_; }
+  std::vector<Switching*> switching() const override { return problem_.switching(); }
+  const StatusWatch& watch() const override { return course_.watch(); }
 
  private:
   static PetscErrorCode evaluate_residual(SNES, Vec unknowns, Vec result, void* self);
@@ -106,7 +96,6 @@ class Newton {
   static PetscErrorCode test_convergence(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                          SNESConvergedReason* reason, void* self);
   static PetscErrorCode search_energy(SNESLineSearch search, void* self);
-  void observe(double norm);
   void limit_linear_solve(double norm);
   void predict(Vec unknowns);
   bool solve_linear(Vec load, Vec result);
@@ -119,8 +108,7 @@ class Newton {
       kept_factorization_; // absent unless the problem is large or the options ask for it
   MatHandle matrix_;
   VecHandle residual_;
-  IterationRecord record_; // of the running solve
-  StatusWatch watch_;
+  SolveCourse course_; // of the running solve
   std::string chosen_search_;
   std::optional<PreconditionerLag> lag_; // absent for factorizations
   std::exception_ptr kept_;

@@ -1,11 +1,13 @@
 // Follows the branches of all switching forms from iterate to iterate: a fingerprint for each, and which points flip.
 #pragma once
 
-#include "form/problem.hpp"
+#include "form/switching.hpp"
 
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
+#include <mpi.h>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -19,13 +21,24 @@ struct FlippingPoint {
   bool operator<(const FlippingPoint& other) const { return std::tie(place, name) < std::tie(other.place, other.name); }
 };
 
+/// Points of this rank that are followed, of one kind: what they belong to, the branch of each as of the last residual
+/// (0: off), in an order and number that do not change while they are watched, and where they are.
+struct WatchedPoints {
+  std::string name;
+  std::function<std::vector<std::uint8_t>()> branches;
+  std::function<std::array<double, 3>(std::size_t point)> place;
+};
+/// Of forms that outlive what is returned.
+std::vector<WatchedPoints> watched(const std::vector<Switching*>& forms);
+
 class StatusWatch {
  public:
   static constexpr std::size_t most_looks = 13; // remembered: one more than the longest cycle
 
-  explicit StatusWatch(const Problem& problem);
+  /// Collective.
+  StatusWatch(MPI_Comm comm, std::vector<WatchedPoints> forms);
 
-  /// Does any form have branches? Without any, look() costs nothing.
+  /// Are there any points? Without any, look() costs nothing.
   bool has_points() const { return num_points_ > 0; }
   void clear() { seen_.clear(); }
 
@@ -50,8 +63,8 @@ class StatusWatch {
  private:
   using Branches = std::vector<std::vector<std::uint8_t>>; // [form][point of this rank]
 
-  const Problem& problem_;
-  std::vector<Switching*> forms_;
+  MPI_Comm comm_;
+  std::vector<WatchedPoints> forms_;
   std::int64_t num_points_ = 0;
   std::deque<Branches> seen_; // the last looks
 };

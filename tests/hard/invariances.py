@@ -1,14 +1,15 @@
 #!/usr/bin/python3
-"""Puts shipped scenes through what must not change their results: invariances.py --program PATH [SCENE...].
+"""Puts shipped scenes through what must not change their results: invariances.py --program PATH [SCENE...] [--seed N].
 
 ranks (2 and 3 instead of 1), numbering of nodes and cells, a quarter turn and a shift of the whole scene, units (lengths
-and stresses in others), a restart on another number of ranks, an increment that is given up although it converged
-and done in two halves (-cutback_at; against a run with those halves as increments), slave and master exchanged (within
-the discretization error). A second run must give the same bits. Scenes run on coarse meshes, made once by gmsh and changed here. Exit status 0 when all hold.
+and stresses in others), a restart after a random increment on another number of ranks, a random increment that is given
+up although it converged and done in halves (-cutback_at; against a run with the same increments declared), slave and
+master exchanged (within the discretization error). A second run must give the same bits. Scenes run on coarse meshes, made once by gmsh and changed here. Exit status 0 when all hold.
 """
 import argparse
 import copy
 import csv
+import random
 import subprocess
 import sys
 import tempfile
@@ -48,6 +49,7 @@ SCENES = {
 EXACT = 1e-7  # relative: the solver's tolerance is 1e-10 of the forces, times what meshes and stiffnesses make of it
 SHIFT = np.array([3.0, -7.0, 0.0])
 LENGTH, STRESS = 1e-3, 1e6  # mm and MPa to m and Pa
+FINER = 3  # times as many increments where one of them is chosen at random
 
 
 def vectors(deck):
@@ -137,8 +139,12 @@ class Harness:
         # 4: so coarse a mesh may fail a tolerance of the certificate; that is not what is asked here.
         if done.returncode not in (0, 4):
             raise SystemExit(f"{name} ended with {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
+        return self.history(folder)[-1]
+
+    @staticmethod
+    def history(folder):
         with open(folder / "results" / "history.csv", encoding="utf-8", newline="") as file:
-            return {key: float(value) for key, value in list(csv.DictReader(file))[-1].items()}
+            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
     def compare(self, name, rows, factors, tolerance):
         """factors: of energies, forces, pressures, areas between the two rows."""
@@ -175,43 +181,67 @@ class Harness:
         return [row.get(f"{pair}_force_{c}", 0.0) for c in "xyz"]
 
 
-def first_part(deck):
-    """The deck up to half of its first step with more than one increment; None when there is none."""
-    found = first_divided(deck)
-    if not found:
-        return None
-    half = copy.deepcopy(deck)
-    i, begin, length, count = found
-    half["steps"] = half["steps"][: i + 1]
-    half["steps"][i].update(to=begin + length * (count // 2), increments=count // 2)
-    return half
+def finer(deck):
+    """The deck with more increments in each step up to the first that chooses its own, the others left out; how many."""
+    fine, total = copy.deepcopy(deck), 0
+    counts = [step.get("increments", 1) for step in fine["steps"]]
+    counted = next((i for i, count in enumerate(counts) if not isinstance(count, int)), len(counts))
+    fine["steps"] = fine["steps"][:counted]
+    for step, count in zip(fine["steps"], counts):
+        step["increments"] = FINER * count
+        total += FINER * count
+    return fine, total
 
 
-def first_divided(deck):
-    """Number of the first step with more than one increment, where it begins, length and number of its increments; or None."""
-    for i, step in enumerate(deck["steps"]):
-        count = step.get("increments")
-        if isinstance(count, int) and count > 1:
-            begin = deck["steps"][i - 1]["to"] if i else 0.0
-            return i, begin, (step["to"] - begin) / count, count
-    return None
+def first_increments(deck, wanted):
+    """The deck up to the end of so many increments."""
+    part, begin = copy.deepcopy(deck), 0.0
+    for i, step in enumerate(part["steps"]):
+        if wanted <= step["increments"]:
+            if wanted < step["increments"]:
+                step["to"] = begin + (step["to"] - begin) / step["increments"] * wanted
+            step["increments"] = wanted
+            part["steps"] = part["steps"][: i + 1]
+            return part
+        wanted, begin = wanted - step["increments"], step["to"]
+    raise ValueError("the deck has fewer increments")
 
 
-def with_halves(deck):
-    """The deck with the last increment of its first divided step as two, and how many increments come before that one."""
-    i, begin, length, count = first_divided(deck)
-    step = deck["steps"][i]
-    head, tail = dict(step, name="head", to=begin + length * (count - 1), increments=count - 1), dict(step, increments=2)
-    halved = dict(deck, steps=[*deck["steps"][:i], head, tail, *deck["steps"][i + 1 :]])
-    return halved, sum(other.get("increments", 1) for other in deck["steps"][:i]) + count - 1
+def with_times(deck, times):
+    """The deck with one increment to each of these times."""
+    steps = [{"name": f"increment_{i}", "to": time, "increments": 1} for i, time in enumerate(times)]
+    return {**deck, "steps": steps}
 
 
-def examine(harness, scene):
-    parameters, increments, exchange, left_out = SCENES[scene]
+def stopped_and_cut(harness, scene, variant):
+    """A restart and a cutback at increments, and on ranks, that the seed chooses."""
+    seed, same = harness.options.seed, (1.0, 1.0, 1.0, 1.0)
+    chance = random.Random(f"{seed} {scene}")
+    (plain_deck, mesh), folder = variant(), harness.folder / scene
+    deck, total = finer(plain_deck)
+    after, before, restarted = chance.randint(1, total - 1), *chance.sample([1, 2, 3], 2)
+    whole = harness.run(f"{scene}/finer", deck, mesh)
+    harness.run("", first_increments(deck, after), mesh, before, folder=folder / "restart")
+    words = ("--restart", folder / "restart" / "results" / "checkpoint.h5")
+    row = harness.run("", deck, mesh, restarted, words, folder / "restart")
+    said = f"seed {seed}: restart after increment {after} of {total}, ranks {before} to {restarted}"
+    harness.compare(f"{scene} {said}", (whole, row), same, EXACT)
+    at = chance.randint(0, total - 1)
+    row = harness.run(f"{scene}/cutback", deck, mesh, 1, ("-cutback_at", at))
+    times = [line["time"] for line in harness.history(folder / "cutback")]
+    if len(times) <= total:
+        raise SystemExit(f"{scene}: no increment was cut")
+    declared = harness.run(f"{scene}/declared", with_times(deck, times), mesh)
+    harness.compare(f"{scene} seed {seed}: forced cutback of increment {at + 1} of {total}", (declared, row), same, EXACT)
+
+
+def make_variants(harness, scene):
+    """A function of a change of deck and mesh that gives both, on a coarse mesh that is made once."""
+    parameters, increments, _, _ = SCENES[scene]
     deck = load_deck(scene)
     geometry = TOP / "inputs" / scene / deck["mesh"]["file"]
     given = {**deck["mesh"].get("parameters", {}), **parameters}
-    dim = 3 if deck["space"] == "solid" else 2
+    dim = dimension(deck)
     folder = harness.folder / scene
     folder.mkdir()
     numbers = [word for key, value in given.items() for word in ("-setnumber", key, str(value))]
@@ -235,6 +265,19 @@ def examine(harness, scene):
             change(other, mesh)
         return other, mesh
 
+    return variant
+
+
+def dimension(deck):
+    return 3 if deck["space"] == "solid" else 2
+
+
+def examine(harness, scene):
+    _, _, exchange, left_out = SCENES[scene]
+    variant = make_variants(harness, scene)
+    if harness.options.stops_only:
+        stopped_and_cut(harness, scene, variant)
+        return
     same = (1.0, 1.0, 1.0, 1.0)
     plain = harness.run(f"{scene}/plain", *variant())
     for ranks in (2, 3):
@@ -246,18 +289,11 @@ def examine(harness, scene):
         name = f"{scene} {change.__name__}"
         harness.compare(name, (plain, harness.run(f"{scene}/{change.__name__}", *variant(change))), same, EXACT)
     if "units" not in left_out:
-        compare_units(harness, scene, plain, variant, dim)
+        compare_units(harness, scene, plain, variant, dimension(variant()[0]))
     if exchange:
         other = harness.run(f"{scene}/exchanged", *variant(exchanged))
         harness.compare(f"{scene} slave and master exchanged", (plain, other), same, exchange)
-    if half := first_part(deck):
-        place = harness.folder / scene / "restart"
-        harness.run("", half, variant()[1], 2, folder=place)
-        words = ("--restart", place / "results" / "checkpoint.h5")
-        harness.compare(f"{scene} restart on 1 rank after 2", (plain, harness.run("", *variant(), 1, words, place)), same, EXACT)
-        halved, before = with_halves(deck)
-        rows = harness.run(f"{scene}/halves", halved, variant()[1]), harness.run(f"{scene}/cutback", *variant(), 1, ("-cutback_at", before))
-        harness.compare(f"{scene} forced cutback", rows, same, EXACT)
+    stopped_and_cut(harness, scene, variant)
 
 
 def compare_units(harness, scene, plain, variant, dim):
@@ -270,6 +306,8 @@ def main():
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(SCENES))
     parser.add_argument("--program", required=True, help="the amontons executable")
     parser.add_argument("--mpirun", default="mpirun --oversubscribe --bind-to none", help="how ranks are started")
+    parser.add_argument("--seed", type=int, default=1, help="of the increments and ranks of restart and cutback")
+    parser.add_argument("--stops_only", action="store_true", help="only restart and cutback")
     options = parser.parse_args()
     options.program = str(Path(options.program).resolve())
     if unknown := set(options.scenes) - set(SCENES):

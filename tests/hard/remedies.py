@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Each remedy alone: remedies.py --program PATH.
 
-A tall block pushed at its top, which rocks on its edge, or a ridge under a ridge (`rocking` and `deep_ridge_friction` of
-scenes.py), in one increment a step that may not be cut (but for the case of cutbacks), with augmentations, friction and
+A tall block pushed at its top, which rocks on its edge, a ridge under a ridge, or a wedge that locks (`rocking`,
+`deep_ridge_friction` and `wedge` of scenes.py), in one increment a step that may not be cut (but for the case of cutbacks), with augmentations, friction and
 steps that plain iterations do not get through. Each case is run with no remedy, must end with status 3 and a diagnosis,
 and with one, must be certified, meet the scene's own figures, and say in the summary that the remedy has helped. A run that gives up must leave a checkpoint and its last iterate.
 """
@@ -16,10 +16,12 @@ import yaml
 from run import PENALTY_TOLERANCE, Results, start
 from scenes import SCENES
 
-# Remedy: scene, seed of the mesh, enforcement, friction coefficient (None: the scene's own), PETSc options.
+# Case: scene, seed of the mesh, enforcement, friction coefficient (None: the scene's own), PETSc options. The remedy is
+# the case's name up to a blank.
 CASES = {
     "merit_search": ("rocking", 0, {"semismooth": {"alpha": 100}}, None, []),
     "held_points": ("rocking", 0, {"penalty": {"alpha": 1e4}}, 2.0, []),
+    "held_points of the dual basis": ("wedge", 0, {"semismooth": {"basis": "dual", "alpha": 1e4}}, 3.0, []),
     "lagged_friction": ("deep_ridge_friction", 0, {"penalty": {"alpha": 1000}}, None, []),
     "softer_augmentation": ("rocking", 0, {"penalty": {"alpha": 1e4}}, None, []),
     "vanishing_support": ("rocking", 0, {"penalty": {"alpha": 1e4}}, 2.0, ["-snes_linesearch_type", "basic"]),
@@ -27,10 +29,11 @@ CASES = {
 }
 
 
-def examine(options, remedy, root):
+def examine(options, case, root):
     """What is wrong with the case, as a list of words."""
-    name, seed, enforce, mu, words = CASES[remedy]
-    folder = Path(root) / remedy
+    name, seed, enforce, mu, words = CASES[case]
+    remedy = case.split()[0]
+    folder = Path(root) / case.replace(" ", "_")
     folder.mkdir()
     mesh, deck, check = SCENES[name].make(seed)
     mesh.write(folder / "mesh.msh")
@@ -74,17 +77,17 @@ def examine(options, remedy, root):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("remedies", nargs="*", metavar="REMEDY", help=", ".join(CASES))
+    parser.add_argument("cases", nargs="*", metavar="CASE", help=", ".join(CASES))
     parser.add_argument("--program", required=True, help="the amontons executable")
     parser.add_argument("--mpirun", default="mpirun --oversubscribe --bind-to none", help="how ranks are started")
     options = parser.parse_args()
     options.program = str(Path(options.program).resolve())
     failed = 0
     with tempfile.TemporaryDirectory() as root:
-        for remedy in options.remedies or CASES:
-            faults = examine(options, remedy, root)
+        for case in options.cases or CASES:
+            faults = examine(options, case, root)
             failed += bool(faults)
-            print(f"{'FAIL' if faults else 'ok  '} {remedy} {'; '.join(faults)}", flush=True)
+            print(f"{'FAIL' if faults else 'ok  '} {case} {'; '.join(faults)}", flush=True)
     return 1 if failed else 0
 
 

@@ -16,6 +16,12 @@ inline int mutation_count(int otherwise) {
   return wanted ? std::atoi(wanted) : otherwise;
 }
 
+/// The first of them that is tried (AMONTONS_FIRST_MUTATION): several processes can share a long row, or go on with it.
+inline int first_mutation() {
+  const char* wanted = std::getenv("AMONTONS_FIRST_MUTATION");
+  return wanted ? std::atoi(wanted) : 0;
+}
+
 class Mutations {
  public:
   /// `words`: what words of a text are exchanged for.

@@ -66,10 +66,12 @@ TEST_CASE("a mutated mesh is distributed or refused, and a refusal says which fi
   REQUIRE(sound.size() > 100);
   test::Mutations mutations({"-1", "0", "1", "7", "1e308", "nan", "inf", "99999999999999999999", "2147483648", "x",
                              "\"\"", "$EndNodes", "$Elements", "\n"});
-  const int count = test::mutation_count(100);
+  const int count = test::mutation_count(100), first = test::first_mutation();
   int read = 0, refused = 0;
   for (int i = 0; i < count; ++i) {
-    folder.write("mesh.msh", i == 0 ? sound : mutations.mutate(sound));
+    const auto text = i == 0 ? sound : mutations.mutate(sound);
+    if (i > 0 && i < first) continue;
+    folder.write("mesh.msh", text);
     try {
       const auto input = read_input(PETSC_COMM_SELF, path);
       distribute_mesh(PETSC_COMM_SELF, input.raw, contact_hints(input.deck), 0);
@@ -86,6 +88,8 @@ TEST_CASE("a mutated mesh is distributed or refused, and a refusal says which fi
     }
     REQUIRE((i > 0 || read == 1));
   }
-  CHECK(read + refused == count);
-  CHECK(refused > count / 4);
+  const int tried = first > 0 ? 1 + count - first : count; // the sound one in any case
+  CHECK(read + refused == tried);
+  CHECK(refused > tried / 4);
+  MESSAGE("mutated meshes " << first << " to " << count - 1 << ": " << read << " distributed, " << refused << " refused");
 }

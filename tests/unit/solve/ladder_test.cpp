@@ -3,6 +3,7 @@
 
 #include "form/viscous.hpp"
 #include "made_up_forms.hpp"
+#include "solve/newton.hpp"
 #include "two_blocks.hpp"
 
 #include <algorithm>
