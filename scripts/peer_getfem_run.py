@@ -1,9 +1,9 @@
 """Solves model.npz and job.json of the current folder with GetFEM, and leaves found.json. Run by scripts/bench.
 
 Linear cells; contact is GetFEM's integral augmented Lagrangian with projection by raytracing, multipliers linear on the slave,
-r = E / h of the softer body, linear solver MUMPS. GetFEM has an integral contact brick for small displacements, too. It pairs
-only points that are within a twentieth of a cell of the other body before anything moves: on a round body it converges to
-a contact that is too small.
+r = E / h of the softer body, linear solver MUMPS. GetFEM has an integral contact brick for small displacements, too. On
+`hertz_2d` that paired only points that were within a twentieth of a cell of the other body before anything moved, and converged to
+half of the contact.
 
 GetFEM's test of convergence adds forces and weighted gaps, relative to the loads, which penalized supports make large. In
 units of stress in which E is 70,000 a gap is then below the tolerance whatever it is; so all stresses are solved for in units of the
