@@ -10,26 +10,32 @@ from deck_edit import StudyError
 
 # gmsh's element code -> nodes, dimension.
 ELEMENTS = {1: (2, 1), 2: (3, 2), 3: (4, 2), 4: (4, 3), 5: (8, 3)}
-# Corners of the faces of a cell, in the order and orientation in which CalculiX numbers them.
-FACES = {8: [(0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)],
-         4: [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)]}
+# Corners of the faces of a cell by its dimension and nodes, in the order and orientation in which CalculiX numbers them.
+FACES = {(3, 8): [(0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)],
+         (3, 4): [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)],
+         (2, 4): [(0, 1), (1, 2), (2, 3), (3, 0)],
+         (2, 3): [(0, 1), (1, 2), (2, 0)]}
+DIMENSION = {"solid": 3, "plane_strain": 2}  # of the spaces that other programs are given
 
 
 @dataclass
 class BenchMesh:
-    """Nodes (n x 3), cells of every body and facets of every surface as arrays of node numbers from 0."""
+    """Nodes (n x 3, flat meshes in z = 0), blocks of cells and facets of every surface as arrays of node numbers from 0. A block
+    is a body's name and those of its cells that have the same number of nodes."""
+    dimension: int
     nodes: np.ndarray
-    bodies: dict = field(default_factory=dict)
+    blocks: list = field(default_factory=list)
     surfaces: dict = field(default_factory=dict)
 
     def faces_of(self, name):
-        """(body, cell of that body, number of its face from 0) of every facet of a surface."""
+        """(number of the cell in all blocks, number of its face), both from 0, of every facet of a surface."""
         wanted = {tuple(sorted(facet)) for facet in self.surfaces[name].tolist()}
-        found = []
-        for body, cells in self.bodies.items():
-            for face, corners in enumerate(FACES[cells.shape[1]]):
+        found, first = [], 0
+        for _, cells in self.blocks:
+            for face, corners in enumerate(FACES[self.dimension, cells.shape[1]]):
                 keys = np.sort(cells[:, corners], axis=1)
-                found += [(body, cell, face) for cell, key in enumerate(map(tuple, keys.tolist())) if key in wanted]
+                found += [(first + cell, face) for cell, key in enumerate(map(tuple, keys.tolist())) if key in wanted]
+            first += len(cells)
         if len(found) != len(wanted):
             raise StudyError(f"the surface '{name}' is not the border of cells")
         return found
@@ -44,7 +50,8 @@ class BenchMesh:
 def make_mesh(deck, place):
     """Runs gmsh on the deck's .geo with its parameters; the mesh is left in place/mesh.msh. Errors: StudyError."""
     path = place / "mesh.msh"
-    command = ["gmsh", "-3", "-format", "msh2", "-v", "1", "-order", "1"]
+    dimension = DIMENSION[deck["space"]]
+    command = ["gmsh", f"-{dimension}", "-format", "msh2", "-v", "1", "-order", "1"]
     for name, value in (deck["mesh"].get("parameters") or {}).items():
         command += ["-setnumber", name, str(value)]
     try:
@@ -54,7 +61,7 @@ def make_mesh(deck, place):
         raise StudyError(f"gmsh cannot be run ({error}); apt-get install gmsh") from error
     if done.returncode or not path.exists():
         raise StudyError(f"gmsh made no mesh: {done.stdout[-300:]} {done.stderr[-300:]}")
-    return read_mesh(path)
+    return read_mesh(path, dimension)
 
 
 def blocks(path):
@@ -69,43 +76,45 @@ def blocks(path):
     return found
 
 
-def read_mesh(path):
+def read_mesh(path, dimension):
     """Bodies and surfaces of a .msh file, with the nodes that cells use."""
     sections = blocks(path)
     names = {}
     for line in sections["PhysicalNames"][1:]:
-        dimension, number, name = line.split(maxsplit=2)
-        names[int(dimension), int(number)] = name.strip('"')
+        size, number, name = line.split(maxsplit=2)
+        names[int(size), int(number)] = name.strip('"')
     table = np.array([line.split() for line in sections["Nodes"][1:]], dtype=float)
     position = {int(number): i for i, number in enumerate(table[:, 0])}
     groups = {}
     for line in sections["Elements"][1:]:
         numbers = [int(word) for word in line.split()]
-        count, dimension = ELEMENTS.get(numbers[1], (0, 0))
-        if (dimension, numbers[3]) in names:
+        count, size = ELEMENTS.get(numbers[1], (0, 0))
+        if (size, numbers[3]) in names:
             nodes = [position[node] for node in numbers[-count:]]
-            groups.setdefault((dimension, names[dimension, numbers[3]]), []).append(nodes)
-    mesh = BenchMesh(table[:, 1:])
-    for (dimension, name), elements in groups.items():
-        (mesh.bodies if dimension == 3 else mesh.surfaces)[name] = np.array(elements)
-    used = np.unique(np.concatenate([cells.ravel() for cells in mesh.bodies.values()]))
-    renumbered = np.full(len(mesh.nodes), -1)
+            groups.setdefault((size, names[size, numbers[3]], count), []).append(nodes)
+    cells = {key: np.array(elements) for key, elements in groups.items() if key[0] == dimension}
+    used = np.unique(np.concatenate([block.ravel() for block in cells.values()]))
+    renumbered = np.full(len(table), -1)
     renumbered[used] = np.arange(len(used))
-    mesh.nodes = mesh.nodes[used]
-    for group in (mesh.bodies, mesh.surfaces):
-        for name in group:
-            group[name] = renumbered[group[name]]
-    for name, cells in mesh.bodies.items():
-        mesh.bodies[name] = upright(mesh.nodes, cells)
+    mesh = BenchMesh(dimension, table[used, 1:])
+    mesh.blocks = [(name, upright(mesh.nodes, renumbered[block], dimension)) for (_, name, _), block in cells.items()]
+    for (size, name, _), facets in groups.items():
+        if size == dimension - 1:
+            if name in mesh.surfaces:
+                raise StudyError(f"the surface '{name}' has triangles and quadrilaterals: peers are given one kind")
+            mesh.surfaces[name] = renumbered[np.array(facets)]
     return mesh
 
 
-def upright(nodes, cells):
-    """Cells whose first three edges make a left-handed system are turned over."""
-    corners = nodes[cells]
-    last = 4 if cells.shape[1] == 8 else 3
-    side = 3 if cells.shape[1] == 8 else 2
+def upright(nodes, cells, dimension):
+    """Cells whose first edges make a left-handed system are turned over."""
+    corners, count = nodes[cells], cells.shape[1]
+    if dimension == 2:
+        along, across = corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0]
+        wrong = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0] < 0.0
+        return np.where(wrong[:, None], cells[:, ::-1], cells)
+    side, last = (3, 4) if count == 8 else (2, 3)
     edges = [corners[:, i] - corners[:, 0] for i in (1, side, last)]
     wrong = np.einsum("ij,ij->i", np.cross(edges[0], edges[1]), edges[2]) < 0.0
-    order = [4, 5, 6, 7, 0, 1, 2, 3] if cells.shape[1] == 8 else [0, 2, 1, 3]
+    order = [4, 5, 6, 7, 0, 1, 2, 3] if count == 8 else [0, 2, 1, 3]
     return np.where(wrong[:, None], cells[:, order], cells)

@@ -1,7 +1,7 @@
 """Other programs on the mesh, material, steps and motion of a deck: what is common to them.
 
-A peer's folder is made to look like the results of a run (history.csv with the reactions, summary.json), so that
-quantities and errors are read by the same code.
+A peer's folder is made to look like the results of a run (history.csv with the reactions, summary.json, fields.h5 with the
+tractions on the slave surface), so that quantities and errors are read by the same code.
 """
 
 import csv
@@ -13,15 +13,19 @@ import shutil
 import subprocess
 import time
 
+import h5py
+import numpy as np
+
 import peer_calculix
 import peer_getfem
-from bench_mesh import make_mesh
+from bench_mesh import DIMENSION, make_mesh
 from bench_table import row_of
 from deck_edit import StudyError
 from expressions import evaluate
-from study_results import read_outcome
+from study_results import on_facets, read_outcome
 from study_runs import POLL_SECONDS, Interrupted, mpi_environment, resident_bytes
 
+SURFACE_CODE = {2: 2, 3: 4, 4: 5}  # corners of a facet -> its code in a Mixed topology
 PEER_MODULES = {"calculix": peer_calculix, "getfem": peer_getfem}
 
 
@@ -48,8 +52,8 @@ def reaction_groups(deck):
 
 def check_deck(deck):
     """Errors: StudyError for what the exporters do not write."""
-    if deck["space"] != "solid" or len(deck["contact"]) != 1 or deck["mesh"].get("refine", 0):
-        raise StudyError("peers are given solids with one contact pair and no refinement")
+    if deck["space"] not in DIMENSION or len(deck["contact"]) != 1 or deck["mesh"].get("refine", 0):
+        raise StudyError("peers are given solids and plane strain with one contact pair and no refinement")
     if any(set(material) != {"elastic"} for material in deck["materials"].values()):
         raise StudyError("peers are given linear elastic materials only")
 
@@ -80,17 +84,41 @@ def run_limited(command, folder, runs):
             max(peak, 1024 * usage.ru_maxrss))
 
 
-def write_results(place, found):
-    """history.csv and summary.json of what a peer found: reactions by group, peak pressure, counts."""
+def write_fields(path, pair, mesh, facets, found):
+    """fields.h5 of one step with the slave surface: pressure at its nodes, shear traction at Gauss points of its facets."""
+    used = np.unique(facets)
+    local, code = np.searchsorted(used, facets), SURFACE_CODE[facets.shape[1]]
+    head = [code, 2] if code == 2 else [code]  # a polyline says how long it is
+    topology = np.column_stack([np.tile(head, (len(local), 1)), local]).ravel()
+    shear = np.asarray(found["shear"])
+    sampled = [on_facets(mesh.nodes[used], {code: local}, part) for part in shear.T]
+    vectors = np.zeros((len(sampled[0][0]), 3))
+    vectors[:, :shear.shape[1]] = np.column_stack([values for _, values, _ in sampled])
+    with h5py.File(path, "w") as file:
+        run = file.create_group("run0")
+        run.attrs["dim"] = mesh.dimension
+        for name in ("mesh", f"surfaces/{pair}"):
+            run[f"{name}/coordinates"], run[f"{name}/topology"] = mesh.nodes[used], topology
+        step = run.create_group("step_0")
+        step.attrs["time"] = 0.0
+        step[f"surfaces/{pair}/pressure"] = found["pressure"]
+        for name, values in (("places", sampled[0][0]), ("weight", sampled[0][2]), ("shear", vectors)):
+            step[f"points/{pair}/{name}"] = values
+
+
+def write_results(place, deck, mesh, found):
+    """history.csv, summary.json and fields.h5 of what a peer found: reactions by group, tractions, counts."""
     (place / "results").mkdir(exist_ok=True)
-    names = {f"reaction_{group}_{'xyz'[c]}": force[c] for group, force in found["reactions"].items() for c in range(3)}
+    names = {f"reaction_{group}_{axis}": part for group, force in found["reactions"].items() for axis, part in zip("xyz", force)}
     with open(place / "results" / "history.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerows([list(names), list(names.values())])
+    pair = deck["contact"][0]
     summary = {"scene": {"unknowns": {"all": found["unknowns"]}}, "increments": found["increments"],
                "newton_iterations": found["newton"],
-               "contact": {found["pair"]: {"max_pressure": found["max_pressure"]}}}
+               "contact": {pair["name"]: {"max_pressure": float(np.max(found["pressure"]))}}}
     (place / "results" / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    write_fields(place / "results" / "fields.h5", pair["name"], mesh, mesh.surfaces[pair["slave"]], found)
 
 
 def solve(task, deck, place, runs):
@@ -110,7 +138,7 @@ def solve(task, deck, place, runs):
         if status or found is None:
             return {**record, "outcome": "crashed" if status else "not converged",
                     "message": (place / "output.txt").read_text(encoding="utf-8", errors="replace").strip()[-200:]}
-        write_results(place, found)
+        write_results(place, deck, mesh, found)
     return record
 
 

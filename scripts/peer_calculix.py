@@ -9,7 +9,7 @@ import re
 import numpy as np
 
 PACKAGE = "calculix-ccx"
-CELL = {8: "C3D8", 4: "C3D4"}
+CELL = {(3, 8): "C3D8", (3, 4): "C3D4", (2, 4): "CPE4", (2, 3): "CPE3"}
 
 
 def numbered(values, width=12):
@@ -22,28 +22,19 @@ def mesh_lines(mesh):
     for i, place in enumerate(mesh.nodes, 1):
         yield f"{i}, " + ", ".join(f"{x:.12g}" for x in place)
     element = 1
-    for body, cells in mesh.bodies.items():
-        yield f"*ELEMENT, TYPE={CELL[cells.shape[1]]}, ELSET=BODY_{body}"
+    for body, cells in mesh.blocks:
+        yield f"*ELEMENT, TYPE={CELL[mesh.dimension, cells.shape[1]]}, ELSET=BODY_{body}"
         for nodes in cells:
             yield f"{element}, " + ", ".join(map(str, nodes + 1))
             element += 1
 
 
-def first_elements(mesh):
-    firsts, at = {}, 1
-    for body, cells in mesh.bodies.items():
-        firsts[body] = at
-        at += len(cells)
-    return firsts
-
-
 def contact_lines(deck, mesh):
     pair = deck["contact"][0]
-    firsts = first_elements(mesh)
     for role in ("slave", "master"):
         yield f"*SURFACE, NAME={role.upper()}, TYPE=ELEMENT"
-        for body, cell, face in mesh.faces_of(pair[role]):
-            yield f"{firsts[body] + cell}, S{face + 1}"
+        for cell, face in mesh.faces_of(pair[role]):
+            yield f"{cell + 1}, S{face + 1}"
     softest = min(float(material["elastic"]["E"]) for material in deck["materials"].values())
     stiffness = 10.0 * softest / mesh.facet_size(pair["slave"])
     yield "*SURFACE INTERACTION, NAME=CONTACT"
@@ -98,23 +89,24 @@ def last_forces(text):
     return found
 
 
-def peak_pressure(path):
-    """Largest nodal contact pressure of the last CONTACT block of model.frd."""
-    peak, inside = 0.0, False
+def nodal_tractions(path, count):
+    """Pressure and the two parts of the shear traction at nodes 1 to count: the last CONTACT block of model.frd, zero at nodes
+    that are not in it."""
+    found, inside = np.zeros((count, 3)), False
     with open(path, encoding="utf-8", errors="replace") as file:
         for line in file:
             if line.startswith(" -4"):
                 inside = line.split()[1] == "CONTACT"
-                peak = 0.0 if inside else peak
-            elif inside and line.startswith(" -1"):
-                peak = max(peak, float(line[49:61]))  # the fourth of six numbers of 12 characters
+                found = np.zeros((count, 3)) if inside else found
+            elif inside and line.startswith(" -1") and int(line[3:13]) <= count:
+                found[int(line[3:13]) - 1] = [float(line[at:at + 12]) for at in (49, 61, 73)]  # the last of six numbers
             elif line.startswith(" -3"):
                 inside = False
-    return peak
+    return found[:, 0], found[:, 1:]
 
 
 def read_results(place, deck, mesh):
-    """Reactions, peak pressure and counts, or None when the last step has not been reached."""
+    """Reactions, tractions and counts, or None when the last step has not been reached."""
     try:
         rows = [line.split() for line in (place / "model.sta").read_text(encoding="utf-8").splitlines()]
         rows = [row for row in rows if len(row) == 7 and row[0].isdigit()]
@@ -125,6 +117,8 @@ def read_results(place, deck, mesh):
         return None
     forces = last_forces((place / "model.dat").read_text(encoding="utf-8"))
     names = {group.lower(): group for group in mesh.surfaces}
-    return {"reactions": {names[group]: force for group, force in forces.items()}, "pair": deck["contact"][0]["name"],
-            "max_pressure": peak_pressure(place / "model.frd"), "unknowns": 3 * len(mesh.nodes),
+    pressure, shear = nodal_tractions(place / "model.frd", len(mesh.nodes))
+    slave = np.unique(mesh.surfaces[deck["contact"][0]["slave"]])
+    return {"reactions": {names[group]: force for group, force in forces.items()}, "pressure": pressure[slave],
+            "shear": shear[slave], "unknowns": mesh.dimension * len(mesh.nodes),
             "increments": len({(row[0], row[1]) for row in rows}), "newton": sum(int(row[3]) for row in rows)}

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/timer.hpp"
+#include "form/block_adder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,22 +43,21 @@ std::vector<double> cell_sizes(const Mesh& mesh) {
 /// Puts blocks into a PETSc matrix, leaving out rows and columns of prescribed equations.
 class Problem::MatrixTangent : public Tangent {
  public:
-  MatrixTangent(const Problem& problem, Mat matrix) : problem_(problem), matrix_(matrix) {}
+  MatrixTangent(const Problem& problem, Mat matrix) : problem_(problem), blocks_(matrix) {}
   void add(std::span<const PetscInt> equations, std::span<const double> block) override {
     rows_.resize(equations.size());
     for (std::size_t i = 0; i < equations.size(); ++i)
       rows_[i] = problem_.is_dropped(equations[i]) ? -1 : equations[i];
     for (std::size_t i = 0; i < equations.size(); ++i)
       diagonal_sum_ += std::abs(block[i * (equations.size() + 1)]);
-    const auto size = static_cast<PetscInt>(rows_.size());
-    AMT_PETSC(MatSetValues(matrix_, size, rows_.data(), size, rows_.data(), block.data(), ADD_VALUES));
+    blocks_.add(rows_, block);
   }
   /// Σ |diagonal| of all that was added on this rank.
   double diagonal_sum() const { return diagonal_sum_; }
 
  private:
   const Problem& problem_;
-  Mat matrix_;
+  BlockAdder blocks_;
   std::vector<PetscInt> rows_;
   double diagonal_sum_ = 0.0;
 };

@@ -101,14 +101,6 @@ bool is_aggregation() {
   return std::string(type.data()) == PCGAMG;
 }
 
-/// Incomplete Cholesky as the smoother (under Chebyshev's iteration) instead of the diagonal: what cells that are much
-/// longer than high couple strongly, it nearly solves for. A fifth of the iterations on graded meshes of contact
-/// (README.md), and no dearer on even ones. In the order of the matrix: reversed Cuthill-McKee is worse on some.
-void smooth_by_factors() {
-  default_option("-mg_levels_pc_type", PCBJACOBI);
-  default_option("-mg_levels_sub_pc_type", PCICC);
-}
-
 } // namespace
 
 void SolveOutcome::add_effort(const SolveOutcome& other) {
@@ -116,6 +108,11 @@ void SolveOutcome::add_effort(const SolveOutcome& other) {
   linear += other.linear;
   outer += other.outer;
   factorizations += other.factorizations;
+}
+
+void smooth_by_factors() {
+  default_option("-mg_levels_pc_type", PCBJACOBI);
+  default_option("-mg_levels_sub_pc_type", PCICC);
 }
 
 void default_option(const std::string& name, const std::string& value) {

@@ -34,6 +34,7 @@ std::string choose_newton_solver(const Problem& problem) {
   if (is_free && is_direct && is_displacement_only && !is_2d && size > krylov_from_3d) {
     AMT_PETSC(PetscOptionsSetValue(nullptr, "-pc_type", PCGAMG));
     AMT_PETSC(PetscOptionsSetValue(nullptr, "-ksp_type", problem.tangent_is_symmetric() ? KSPCG : KSPGMRES));
+    if (problem.tangent_is_symmetric()) smooth_by_factors();
     default_option("-ksp_max_it", "2000");
     words = "smoothed-aggregation multigrid with conjugate gradients or GMRES";
   } else if (is_free && is_direct && size > (is_2d ? kept_from_2d : kept_from_3d)) {
