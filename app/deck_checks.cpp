@@ -150,7 +150,6 @@ void check_smoothing(const Check& check) {
                                   "Take the smoothing out.");
     refuse(!meets_itself(contact) && !std::holds_alternative<Located<std::string>>(contact.master.value),
            "a rigid shape is smooth already. Take the smoothing out.");
-    refuse(deck.mesh.order != 1, "facets of order 2 are curved already. Take the smoothing out, or set mesh.order: 1.");
     refuse(std::holds_alternative<SegmentIntegrationDeck>(contact.integration),
            "segments are cut by the facets of the mesh. Use `integration: {facet: {order: 6}}`.");
     refuse(std::holds_alternative<ViDeck>(contact.enforce) || is_condensed(contact.enforce),

@@ -39,14 +39,20 @@ def felt_again(run, first, second, tolerance=1e-6):
 
 @scene("slave nodes pass an edge of the master back and forth (the lecture's endless loop)", FRICTIONAL, name="edge_back_and_forth", rise=lambda x: -0.1 * abs(x - 0.8))
 @scene("the same with projections to the closest point", FRICTIONAL, name="edge_closest_point", rise=lambda x: -0.1 * abs(x - 0.8), projection={"closest_point": {}})
+@scene("the same on a smoothed master, where forces have a potential", FRICTIONAL, name="edge_smoothed", rise=lambda x: -0.1 * abs(x - 0.8), projection={"closest_point": {}}, smooth=True)
 @scene("back and forth over a valley of the master", FRICTIONAL, name="valley_back_and_forth", rise=lambda x: 0.1 * abs(x - 0.8))
-def back_and_forth(seed, rise, projection=SLAVE_NORMAL):
+def back_and_forth(seed, rise, projection=SLAVE_NORMAL, smooth=False):
     mesh, whole = slider(seed, "0.07*sin(pi*(t-1))*(t>1)", "-0.02*min(t,1)", rise=rise, to=5, increments=50, projection=projection)
+    if smooth:
+        whole["contact"][0]["smoothing"] = {"cubic": {}}
 
     def check(run):
         yield from felt_again(run, 1, 3)
         yield from felt_again(run, 1.5, 3.5)
         yield from felt_again(run, 2.5, 4.5)
+        if smooth:
+            stored = run.history["energy_stored"]
+            yield "energy stored less work / stored", np.abs(stored - run.history["energy_external_work"]).max() / stored.max(), 0.01
 
     return mesh, whole, check
 
