@@ -3,6 +3,7 @@
 #include "accuracy/sequence_error.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "wall_clock.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,8 @@ const char* quantity_method(AdaptQuantity quantity) {
 
 } // namespace
 
-Adaptation::Adaptation(const Deck& deck) : adapt_(*deck.adapt), first_mesh_(deck.mesh.file.place), dim_(deck.dim()) {
+Adaptation::Adaptation(const Deck& deck)
+    : started_(now()), adapt_(*deck.adapt), first_mesh_(deck.mesh.file.place), dim_(deck.dim()) {
   for (std::size_t i = 0; adapt_.pair && i < deck.contact.size(); ++i)
     if (deck.contact[i].name.value == *adapt_.pair) pair_ = i;
 }

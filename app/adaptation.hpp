@@ -32,6 +32,8 @@ class Adaptation {
 
   /// How the mesh of this pass is to be made. `sizes` are there on rank 0 only.
   const FreeMeshing& meshing() const { return meshing_; }
+  /// When the first pass began, in seconds of the wall clock.
+  double started() const { return started_; }
   /// 1 for the first mesh.
   int pass() const { return static_cast<int>(results_.size()) + 1; }
 
@@ -65,6 +67,7 @@ class Adaptation {
   bool choose_sizes(MPI_Comm comm, double reduction);
   void set_sizes(double factor);
 
+  double started_;
   AdaptDeck adapt_;
   Place first_mesh_; // where the deck says how the first mesh is made
   int dim_;

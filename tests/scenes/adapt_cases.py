@@ -10,6 +10,8 @@ def passes_of(bench, label, results, target):
     bench.below(f"{label}: estimated error of the last pass", passes[-1]["error"], target)
     unknowns = sum(results.summary["scene"]["unknowns"].values())
     bench.close(f"{label}: unknowns of the last pass are those of the run", passes[-1]["unknowns"], unknowns, 0.0)
+    shares = [item["cost"]["share_of_time"] for item in results.summary["errors"].values() if "cost" in item]
+    bench.below(f"{label}: share of all estimates of errors in the time of all passes", sum(shares), 1.0)
     errors = [item["error_energy_norm"] for item in passes]
     bench.below(f"{label}: largest error in the energy norm over that of the pass before",
                 max((b / a for a, b in zip(errors, errors[1:])), default=0.0), 0.95)
