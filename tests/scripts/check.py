@@ -13,14 +13,18 @@ import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
 import yaml
 
 TOP = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(TOP / "tests/scenes"), str(TOP / "tests/support")]
+sys.path[:0] = [str(TOP / "tests/scenes"), str(TOP / "tests/support"), str(TOP / "scripts")]
 import browser  # noqa: E402
 import hertz_cases  # noqa: E402
 from harness import Results, load_deck  # noqa: E402
 from score import Score  # noqa: E402
+from bench_mesh import FACES, make_mesh  # noqa: E402
+from bench_peers import write_fields  # noqa: E402
+from study_results import profile  # noqa: E402
 
 HERTZ_CONSTANTS = {"modulus": "1/((1 - 0.3^2)/210e3 + (1 - 0.3^2)/70e3)", "a": "sqrt(4*900*50/(pi*modulus))",
                    "p0": "2*900/(pi*a)"}
@@ -162,6 +166,43 @@ def bench(case):
         path.write_text(yaml.safe_dump({**content, **change}, sort_keys=False), encoding="utf-8")
         status, text = case.run("bench", path, "--program", case.program)
         case.expect(f"refused: {message}", status == 2 and message in text, text)
+
+
+def peers(case):
+    """Meshes for other programs have the deck's areas and borders, plane and solid; what a peer found comes back as it was."""
+    for scene, parameters, measures, border in (("hertz_2d", {"h": 0.4}, {"block": 50.0**2}, ("block_top", 50.0)),
+                                                ("press_and_slide_3d", {"n": 4}, {"slider": 256.0, "base": 576.0},
+                                                 ("slider_bottom", 64.0))):
+        deck = load_deck(scene)
+        deck["mesh"].update(file=str(TOP / f"inputs/{scene}/{scene}.geo"), parameters=parameters)
+        mesh = make_mesh(deck, case.folder)
+        for body, measure in measures.items():
+            found = sum(cell_measures(mesh.nodes, cells, mesh.dimension).sum() for name, cells in mesh.blocks if name == body)
+            case.expect(f"{scene}: the measure of {body}", abs(found / measure - 1.0) < 1e-9, found)
+        name, size = border
+        cells = [cell for _, block in mesh.blocks for cell in block]
+        corners = {tuple(sorted(cells[cell][list(FACES[mesh.dimension, len(cells[cell])][face])]))
+                   for cell, face in mesh.faces_of(name)}
+        case.expect(f"{scene}: faces of {name}", corners == {tuple(sorted(facet)) for facet in mesh.surfaces[name]})
+
+        used = np.unique(mesh.surfaces[name])
+        found = {"pressure": 3.0 + mesh.nodes[used, 0], "shear": np.tile([1.0, -2.0, 0.0][:mesh.dimension], (len(used), 1))}
+        write_fields(case.folder / "fields.h5", "pair", mesh, mesh.surfaces[name], found)
+        places, values, weights = profile(case.folder, {"pair": "pair", "field": "pressure", "at": "nodes"}, False)
+        case.expect(f"{scene}: pressure between nodes", np.abs(values - 3.0 - places[:, 0]).max() < 1e-9, values)
+        case.expect(f"{scene}: size of the border", abs(weights.sum() / size - 1.0) < 1e-9, weights.sum())
+        _, values, weights = profile(case.folder, {"pair": "pair", "field": "shear", "at": "points"}, False)
+        case.expect(f"{scene}: shear at points", np.abs(values - 5.0**0.5).max() < 1e-9
+                    and abs(weights.sum() / size - 1.0) < 1e-9, values)
+
+
+def cell_measures(nodes, cells, dimension):
+    """Signed areas of plane cells; volumes of hexahedra that are boxes."""
+    corners = nodes[cells]
+    if dimension == 3:
+        return np.linalg.det(corners[:, [1, 3, 4]] - corners[:, :1])
+    following = np.roll(corners, -1, axis=1)
+    return 0.5 * (corners[..., 0] * following[..., 1] - corners[..., 1] * following[..., 0]).sum(axis=1)
 
 
 def resume(case):
@@ -400,7 +441,7 @@ def browsed(case):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     cases = {"study": study, "resume": resume, "wrong_study": wrong_study, "effects": effects, "report": report,
-             "plan": plan, "wrong_plan": wrong_plan, "bench": bench, "memory": memory, "browser": browsed}
+             "plan": plan, "wrong_plan": wrong_plan, "bench": bench, "peers": peers, "memory": memory, "browser": browsed}
     parser.add_argument("case", choices=cases)
     parser.add_argument("--program", required=True)
     arguments = parser.parse_args()
