@@ -12,11 +12,13 @@ PACKAGE = "python3-getfem"
 def write_input(place, deck, mesh, motion, groups):
     """Writes the mesh and the steps as plain data and returns the command that solves them."""
     arrays = {"nodes": mesh.nodes[:, :mesh.dimension],
-              **{f"cells_{i}": cells for i, (_, cells) in enumerate(mesh.blocks)}, **{f"surface_{name}": facets for name, facets in mesh.surfaces.items()}}
+              **{f"cells_{i}": cells for i, (_, cells) in enumerate(mesh.blocks)},
+              **{f"surface_{name}": facets for name, facets in mesh.surfaces.items()}}
     np.savez(place / "model.npz", **arrays)
     pair = deck["contact"][0]
     job = {"blocks": [body for body, _ in mesh.blocks],
-           "bodies": {body: {key: float(value) for key, value in deck["materials"][material]["elastic"].items()} for body, material in deck["bodies"].items()},
+           "bodies": {body: {key: float(value) for key, value in deck["materials"][material]["elastic"].items()}
+                      for body, material in deck["bodies"].items()},
            "slave": pair["slave"], "master": pair["master"], "size": mesh.facet_size(pair["slave"]),
            "mu": pair["friction"]["coulomb"]["mu"] if "friction" in pair else None, "groups": groups,
            "increments": [step["increments"] for step in deck["steps"]], "motion": motion}

@@ -21,10 +21,10 @@ class KeptFactorization;
 /// Sets a PETSc option unless the user has set it already.
 void default_option(const std::string& name, const std::string& value);
 
-/// Incomplete Cholesky as multigrid's smoother (under Chebyshev's iteration) instead of the diagonal, unless the user has
-/// chosen: what cells that are much longer than high couple strongly, it nearly solves for. A fifth of the iterations on
-/// graded meshes of contact (README.md), and no dearer on even ones. In the order of the matrix: reversed Cuthill-McKee is
-/// worse on some.
+/// Incomplete Cholesky as multigrid's smoother (under Chebyshev's iteration) instead of the diagonal, unless the user
+/// has chosen: what cells that are much longer than high couple strongly, it nearly solves for. A fifth of the
+/// iterations on graded meshes of contact (README.md), and no dearer on even ones. In the order of the matrix: reversed
+/// Cuthill-McKee is worse on some.
 void smooth_by_factors();
 
 /// Sets the defaults for a problem: direct (MUMPS, Cholesky where the tangent is symmetric, SCOTCH ordering) or, above
