@@ -44,9 +44,11 @@ std::string advice(const Certificate::Item& item, const Deck& deck) {
   const bool is_overlap = item.name == "penetration" || item.name == "complementarity" || item.name == "missed_contact";
   if (is_overlap && any_pair(deck, [](const auto& pair) { return std::holds_alternative<PenaltyDeck>(pair.enforce); }))
     return formatted(
-        ". A penalty lets bodies overlap by pressure h / (alpha E), on any mesh: make alpha more than %.0f "
-        "times what it is, or take `enforce: {semismooth: {}}` or `{uzawa: {}}`, which leave no overlap. "
-        "(A nearly incompressible body that is held all around is much stiffer than its E.)",
+        ". A penalty lets bodies overlap by pressure h / (alpha E), on any mesh: make alpha larger, at least %.0f "
+        "times "
+        "and more where prescribed displacements press the bodies, or take `enforce: {semismooth: {}}` or `{uzawa: "
+        "{}}`, which leave no overlap. (A nearly incompressible body that is held all around is much stiffer than its "
+        "E.)",
         std::ceil(item.value / item.tolerance));
   if (item.name == "complementarity" || item.name == "penetration")
     return ". Facets that are too large for the shapes and edges there do that: make both sides' smaller.";

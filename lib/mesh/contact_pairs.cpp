@@ -63,7 +63,12 @@ class FacetGrid {
 
  private:
   FacetCorners cube(const Place& place) const {
-    const auto index = [&](int i) { return static_cast<std::int64_t>(std::floor(place[i] / width_)); };
+    // What an integer does not hold (far outliers, sizes that overflow) shares a cube: distances decide there, too.
+    constexpr double most = 1e15;
+    const auto index = [&](int i) {
+      const double at = std::floor(place[i] / width_);
+      return std::abs(at) < most ? static_cast<std::int64_t>(at) : std::int64_t(0);
+    };
     return {index(0), index(1), index(2), 0};
   }
 

@@ -30,7 +30,7 @@ def closest_point(deck):
 
 # Case: scene, formulation, seed, status, words of the refusal, what is changed. 30 is the default of a penalty's alpha.
 CASES = {
-    "stiffer_penalty": ("nu_0.4999", "penalty", 0, 4, "make alpha more than", enforce({"penalty": {"alpha": 30 * 1000}})),
+    "stiffer_penalty": ("nu_0.4999", "penalty", 0, 4, "make alpha larger", enforce({"penalty": {"alpha": 30 * 1000}})),
     "penalty_to_uzawa": ("nu_0.4999", "penalty", 1, 4, "`{uzawa: {}}`", enforce({"uzawa": {}})),
     "couple_of_vi": ("touch_at_a_point", "vi", 1, 4, "take `enforce: {semismooth: {}}`", enforce({"semismooth": {}})),
     "couple_of_the_dual_basis": ("touch_at_a_point_friction", "dual", 1, 4, "take `enforce: {semismooth: {}}`", enforce({"semismooth": {}})),
