@@ -53,7 +53,12 @@ double error_on_arc(int dim, int cells, const MasterSmoothing& smoothing) {
 
 /// A bumpy surface on a grid that is distorted already in the reference configuration.
 Scene bumpy(int dim, const MasterSmoothing& smoothing) {
-  return {.dim = dim, .search_distance = 3.0, .smoothing = smoothing, .cells = 4, .shape = [dim](const Vector3d& X) {
+  return {.dim = dim,
+          .comm = PETSC_COMM_SELF,
+          .search_distance = 3.0,
+          .smoothing = smoothing,
+          .cells = 4,
+          .shape = [dim](const Vector3d& X) {
             Vector3d x = X;
             for (int c = 0; c < dim - 1; ++c)
               x[c] += 0.03 * noise(X, c, 9);
@@ -122,6 +127,7 @@ TEST_CASE("smoothed master: a roof keeps its ridge below the crease's angle and 
       CAPTURE(dim);
       CAPTURE(crease);
       Fixture fixture({.dim = dim,
+                       .comm = PETSC_COMM_SELF,
                        .search_distance = 3.0,
                        .smoothing = CubicMaster{crease},
                        .cells = 4,
