@@ -143,16 +143,14 @@ std::set<FacetKey> facets_of_group(const RawMesh& raw, const std::string& name) 
 /// Only facets of order 1 can be smoothed, in 3D only quadrangles.
 void check_smoothing(Fit& fit, const ContactDeck& contact, const Located<std::string>& master) {
   if (!std::holds_alternative<CubicMasterDeck>(contact.smoothing)) return;
-  const auto any = [&](const auto& is_wrong) {
-    return std::any_of(fit.raw.subs.begin(), fit.raw.subs.end(), [&](const auto& sub) {
-      return fit.raw.groups[sub.group].name == master.value && is_wrong(sub.type);
-    });
-  };
-  if (any([](ElementType type) { return element_order(type) != 1; }))
+  if (fit.raw.order != 1)
     fit.fail(master.place, "the master '" + master.value +
                                "' is smoothed, but its facets are of order 2 and curved "
                                "already. Take the smoothing out, or set mesh.order: 1.");
-  if (any([](ElementType type) { return num_vertices(type) == 3; }))
+  const bool has_triangles = std::any_of(fit.raw.subs.begin(), fit.raw.subs.end(), [&](const auto& sub) {
+    return fit.raw.groups[sub.group].name == master.value && num_vertices(sub.type) == 3;
+  });
+  if (has_triangles)
     fit.fail(master.place, "the master '" + master.value +
                                "' is smoothed, but has triangles. Mesh it with quadrangles "
                                "(Recombine Surface), or take the smoothing out.");

@@ -265,6 +265,26 @@ def squeezed_between_walls(seed):
     return mesh, whole, check
 
 
+@scene("a body is pushed along by another one, at a distance at first, which then leaves it to friction alone", FRICTIONAL)
+def pushed_and_left(seed):
+    mesh, mu, mu_side, load = Mesh(seed), 0.3, 0.1, 1e-3 * E
+    mesh.box("pusher", (-1, 0.3), (-0.01, 0.9), (6, 6))
+    mesh.box("block", (0, 0), (1, 1), (8, 8))
+    contact = [pair("block_bottom", plane((0, 0), (0, 1)), "ground", mu, False), pair("pusher_right", "block_left", "side", mu_side)]
+    boundary = [hold("pusher_left", x="0.02*(max(t-1,0)-2*max(t-2,0))", y=0), push("block_top", f"{load}*min(t,1)")]
+    whole = deck({"pusher": (E, NU), "block": (E, NU)}, boundary, contact, steps=((1, 1), (2, 10), (3, 10)))
+
+    def check(run):
+        # Pushed: the block slides on the ground and down on the pusher, N = load + mu_side F, F = mu N.
+        force = mu * load / (1 - mu * mu_side)
+        pushed = int(np.argmin(np.abs(run.history["time"] - 2)))
+        yield "force of the push", abs(run.history["reaction_pusher_left_x"][pushed] / force - 1), 1e-6
+        yield "weight on the ground", abs(run.history["contact_ground_force_y"][-1] / load - 1), 1e-6
+        yield "nothing left along the ground", abs(run.history["contact_ground_force_x"][-1]) / load, 1e-6
+
+    return mesh, whole, check
+
+
 @scene("a diamond in a groove: two slopes hold it, and they share its corner", FRICTIONAL)
 def corner_in_groove(seed):
     mesh = Mesh(seed)
