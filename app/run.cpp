@@ -52,7 +52,7 @@ class Run {
     std::optional<PathControl> path;
     const std::string& name;
   };
-  Stretch begin_step(std::size_t step) const;
+  Stretch begin_step(std::size_t step);
   // These return an exit status: status_certified to go on.
   int march_step(std::size_t step);
   int stop(const Stretch& stretch);
@@ -191,7 +191,7 @@ StepPlan Run::plan(std::size_t step) const {
   return plan;
 }
 
-Run::Stretch Run::begin_step(std::size_t step) const {
+Run::Stretch Run::begin_step(std::size_t step) {
   const auto step_plan = plan(step);
   const auto& declared = scene_->deck.steps[step];
   const bool resumed = step == first_step_ && first_time_ > step_plan.begin;
@@ -205,6 +205,7 @@ Run::Stretch Run::begin_step(std::size_t step) const {
     stretch.path.emplace(*automatic->path_tolerance, step_plan.end - step_plan.begin);
     if (resumed) stretch.path->set_taken(resume_path_taken_);
   }
+  if (!resumed) scene_->problem->forget_course();
   return stretch;
 }
 

@@ -35,6 +35,9 @@ class ContactForm : public Form, public PairReport, public Switching {
   bool coupling_changed(const State& state) override;
   void commit(const State& state) override;
   void roll_back() override;
+  void forget_course() override {
+    if (tangential_) tangential_->forget_course();
+  }
   /// A ContactHistory.
   std::any history() const override { return accepted(); }
   void restore(const std::any& history) override { restore(std::any_cast<const ContactHistory&>(history)); }

@@ -28,6 +28,9 @@ class MortarForm : public Form, public PairReport {
   bool tangent_is_symmetric() const override { return !friction_; }
   void commit(const State& state) override;
   void roll_back() override;
+  void forget_course() override {
+    if (friction_) friction_->forget_course();
+  }
   std::any history() const override { return accepted(); }
   void restore(const std::any& history) override { restore(std::any_cast<const ContactHistory&>(history)); }
   ContactHistory accepted() const override;

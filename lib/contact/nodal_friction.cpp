@@ -92,9 +92,13 @@ void NodalFriction::commit(double time) {
 }
 
 void NodalFriction::roll_back() {
-  for (auto& node : history_)
-    node.slip_rate = 0.0; // going on like that has failed
+  forget_course(); // going on like that has failed
   resume();
+}
+
+void NodalFriction::forget_course() {
+  for (auto& node : history_)
+    node.slip_rate = 0.0;
 }
 
 void NodalFriction::resume() {

@@ -42,6 +42,8 @@ class NodalFriction {
 
   void commit(double time);
   void roll_back();
+  /// The next increment's first guess is that all nodes stick.
+  void forget_course();
   void save(ContactHistory& history) const;
   void restore(const ContactHistory& history);
 

@@ -360,8 +360,12 @@ void TangentialPart::remember() {
 
 void TangentialPart::roll_back() {
   multipliers_ = multipliers_old_;
+  forget_course(); // going on like that has failed
+}
+
+void TangentialPart::forget_course() {
   for (auto& point : history_)
-    point.slip_rate = 0.0; // going on like that has failed
+    point.slip_rate = 0.0;
 }
 
 void TangentialPart::save(ContactHistory& history) const {

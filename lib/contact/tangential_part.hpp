@@ -64,6 +64,8 @@ class TangentialPart {
 
   void commit(const State& state);
   void roll_back();
+  /// The next increment's first guess is that all points stick.
+  void forget_course();
   /// Adds what was last accepted to the pair's history, and makes a history the last accepted one.
   void save(ContactHistory& history) const;
   void restore(const ContactHistory& history);

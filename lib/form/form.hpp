@@ -110,6 +110,8 @@ class Form {
   /// Accepts the state as the start of the next increment, or goes back to the last accepted one.
   virtual void commit(const State&) {}
   virtual void roll_back() {}
+  /// What comes goes another way than the last increment: nothing is to be guessed from that.
+  virtual void forget_course() {}
   /// A copy of all that commit() changes, empty for a form without history; and the way back to it, from whatever has
   /// been tried or accepted since.
   virtual std::any history() const { return {}; }

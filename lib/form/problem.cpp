@@ -237,6 +237,11 @@ void Problem::roll_back() {
     form->roll_back();
 }
 
+void Problem::forget_course() {
+  for (const auto& form : forms_)
+    form->forget_course();
+}
+
 Problem::Snapshot Problem::snapshot() const {
   Snapshot snapshot{.time = accepted_time_, .largest_force = largest_accepted_force_, .histories = {}};
   for (const auto& form : forms_)

@@ -39,6 +39,8 @@ class Problem {
   /// keeps the unknowns). Collective.
   void commit(Vec unknowns);
   void roll_back();
+  /// The next increment begins another course of loading: Form::forget_course.
+  void forget_course();
 
   /// What commit() changes: to go back over more than one accepted state.
   struct Snapshot {
