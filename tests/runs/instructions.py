@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """An effect that is off is not there: instructions.py CASE --program PATH [--valgrind valgrind]
 
-Runs of patch_2d, counted by valgrind's callgrind (allocations; instructions outside of the dynamic linker and of MPI,
-which waits longer on a busy machine) and by PETSc (objects).
+Runs of patch_2d, counted by valgrind's callgrind (allocations; instructions in the program and in the libraries that
+compute: MPI and the threads of SCOTCH wait longer on a busy machine, and a longer text takes longer to parse) and by PETSc
+(objects).
 
 off: the deck with only what it must say against the same with every effect written down as off: equal unknowns and
 PETSc objects, instructions and allocations within a hundredth; and in neither has any function of any effect of the
@@ -76,7 +77,7 @@ OFF = {"kinematics": "small", "estimate_path_error": False, "look_for_other_solu
 OFF_OF_PAIRS = {"contact.0.projection": {"closest_point": {}}}
 
 
-NOT_COUNTED = re.compile(r"/ld-linux|/libopen-|/libmpi|/libevent|/libpmix|/openmpi/|/pmix")
+COMPUTES = re.compile(r"/lib(petsc|dmumps|mumps|pord|openblas|blas|lapack|gmsh|hdf5|metis)|/amontons")
 
 
 def counted(path):
@@ -105,7 +106,7 @@ def counted(path):
                     allocations += int(value.split()[0])
                 skip = True  # the next line has the cost of what was called
             elif line[0] in "0123456789+-*":
-                if not skip and not NOT_COUNTED.search(library):
+                if not skip and COMPUTES.search(library):
                     own[function] += int(line.split()[1])
                 skip = False
     return own, allocations
@@ -186,7 +187,7 @@ def on(score, options, folder):
         run = Run(options, folder, changed(minimal(), changes))
         seen.update({name: run.inside(EFFECTS[name]) for name in names})
     for name, found in seen.items():
-        score.expect(f"{name} can be seen: {found} instructions", found > 100)
+        score.expect(f"{name} can be seen: {found} instructions", found > 0)
     score.expect("every effect was switched on", set(seen) == {"contact", *EFFECTS}, set(EFFECTS) - set(seen))
 
 
