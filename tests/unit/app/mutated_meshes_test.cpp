@@ -91,5 +91,6 @@ TEST_CASE("a mutated mesh is distributed or refused, and a refusal says which fi
   const int tried = first > 0 ? 1 + count - first : count; // the sound one in any case
   CHECK(read + refused == tried);
   CHECK(refused > tried / 4);
-  MESSAGE("mutated meshes " << first << " to " << count - 1 << ": " << read << " distributed, " << refused << " refused");
+  MESSAGE("mutated meshes " << first << " to " << count - 1 << ": " << read << " distributed, " << refused
+                            << " refused");
 }
