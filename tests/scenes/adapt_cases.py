@@ -117,7 +117,6 @@ def uniform_3d(bench):
     bench.below("true error of the adaptive mesh over that of the uniform one", errors[0] / errors[1], 1.0)
     bench.below("adaptive / uniform unknowns", sizes[0] / sizes[1], 1 / 5)
     bench.below("adaptive / uniform CPU time", times[0] / times[1], 1 / 3)
-    print(f"     errors {errors}, unknowns {sizes}, CPU seconds {times}")
 
 
 CASES = {
