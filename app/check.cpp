@@ -142,7 +142,8 @@ void describe_effects(std::ostream& out, const Deck& deck) {
 } // namespace
 
 std::string check_report(MPI_Comm comm, const std::string& deck_path) {
-  const auto [deck, raw] = read_input(comm, deck_path);
+  const auto deck = read_deck(comm, deck_path);
+  const auto raw = read_checked_mesh(comm, deck);
   std::ostringstream out;
   out << deck.path << (deck.title.empty() ? "" : ": " + deck.title) << "\n"
       << "  space    " << space_text(deck.space)

@@ -37,7 +37,7 @@ constexpr int status_certified = 0, status_not_converged = 3, status_not_certifi
 class Run {
  public:
   /// `adaptation`: the passes that this run is one of; null without adaptive meshing.
-  Run(MPI_Comm comm, const RunArguments& arguments, Adaptation* adaptation);
+  Run(MPI_Comm comm, const RunArguments& arguments, const Deck& deck, Adaptation* adaptation);
   std::int64_t num_unknowns() const;
   int march();
 
@@ -102,10 +102,10 @@ class Run {
   std::optional<std::vector<ContactSamples>> last_samples_; // absent until an increment is accepted
 };
 
-Run::Run(MPI_Comm comm, const RunArguments& arguments, Adaptation* adaptation)
+Run::Run(MPI_Comm comm, const RunArguments& arguments, const Deck& deck, Adaptation* adaptation)
     : comm_(comm), arguments_(arguments), adaptation_(adaptation),
       all_started_(adaptation ? adaptation->started() : started_), log_(comm) {
-  scene_ = build_scene(comm, arguments.deck, adaptation ? adaptation->meshing() : FreeMeshing{});
+  scene_ = build_scene(comm, deck, adaptation ? adaptation->meshing() : FreeMeshing{});
   for (const auto& [name, value] : scene_->deck.petsc)
     default_option("-" + name, value);
   directory_ = arguments.out.value_or(scene_->deck.output.directory);
@@ -541,7 +541,7 @@ int run_passes(MPI_Comm comm, const RunArguments& arguments, const Deck& deck) {
         "the start, without --restart.");
   Adaptation adaptation(deck);
   for (;;) {
-    Run pass(comm, arguments, &adaptation);
+    Run pass(comm, arguments, deck, &adaptation);
     if (!adaptation.fits(pass.num_unknowns())) continue;
     const int status = pass.march();
     const bool solved = status == status_certified || status == status_not_certified;
@@ -554,7 +554,7 @@ int run_passes(MPI_Comm comm, const RunArguments& arguments, const Deck& deck) {
 int run(MPI_Comm comm, const RunArguments& arguments) {
   const auto deck = read_deck(comm, arguments.deck);
   if (deck.adapt) return run_passes(comm, arguments, deck);
-  return Run(comm, arguments, nullptr).march();
+  return Run(comm, arguments, deck, nullptr).march();
 }
 
 } // namespace amontons

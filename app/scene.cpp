@@ -288,13 +288,13 @@ double Scene::internal_work(Vec unknowns) const {
   return sum_over_ranks(mesh.comm, bulk->internal_work(problem->state_at(unknowns)));
 }
 
-std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path, const FreeMeshing& meshing) {
+std::unique_ptr<Scene> build_scene(MPI_Comm comm, Deck checked, const FreeMeshing& meshing) {
   auto scene = std::make_unique<Scene>();
   {
     const Phase phase("mesh");
-    auto input = read_input(comm, deck_path, meshing);
-    scene->deck = std::move(input.deck);
-    scene->mesh = distribute_mesh(comm, input.raw, contact_hints(scene->deck), scene->deck.mesh.refine);
+    scene->deck = std::move(checked);
+    const auto raw = read_checked_mesh(comm, scene->deck, meshing);
+    scene->mesh = distribute_mesh(comm, raw, contact_hints(scene->deck), scene->deck.mesh.refine);
   }
   const auto& deck = scene->deck;
   const auto& mesh = scene->mesh;

@@ -45,9 +45,9 @@ struct Scene {
   double internal_work(Vec unknowns) const;
 };
 
-/// Reads the deck and the mesh, checks both, distributes and sets up. Throws UserError with everything that is wrong,
-/// on every rank. `meshing` counts where the deck has `adapt`. Collective.
-std::unique_ptr<Scene> build_scene(MPI_Comm comm, const std::string& deck_path, const FreeMeshing& meshing = {});
+/// Reads the mesh of a deck, checks the one against the other, distributes and sets up. Throws UserError with
+/// everything that is wrong, on every rank. `meshing` counts where the deck has `adapt`. Collective.
+std::unique_ptr<Scene> build_scene(MPI_Comm comm, Deck checked, const FreeMeshing& meshing = {});
 
 /// The pairs as the deck declares them, with rigid masters where they are now: for reports and the certificate.
 std::vector<ContactPairNames> pair_names(const Scene& scene);

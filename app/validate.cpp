@@ -299,14 +299,13 @@ void validate_against_mesh(const Deck& deck, const RawMesh& raw) {
   if (!fit.messages.empty()) throw UserError(std::move(fit.messages));
 }
 
-CheckedInput read_input(MPI_Comm comm, const std::string& deck_path, const FreeMeshing& meshing) {
-  CheckedInput input;
-  input.deck = read_deck(comm, deck_path);
+RawMesh read_checked_mesh(MPI_Comm comm, const Deck& deck, const FreeMeshing& meshing) {
+  RawMesh raw;
   on_root(comm, [&] {
-    input.raw = read_mesh(mesh_source(input.deck, meshing));
-    validate_against_mesh(input.deck, input.raw);
+    raw = read_mesh(mesh_source(deck, meshing));
+    validate_against_mesh(deck, raw);
   });
-  return input;
+  return raw;
 }
 
 } // namespace amontons

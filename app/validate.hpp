@@ -1,4 +1,4 @@
-// What a deck asks of its mesh, and the way from a deck's file to checked input that both `check` and a run take.
+// What a deck asks of its mesh, and the way from a deck to its checked mesh that both `check` and a run take.
 #pragma once
 
 #include "deck.hpp"
@@ -19,12 +19,8 @@ ContactHints contact_hints(const Deck& deck);
 /// where `raw` is.
 void validate_against_mesh(const Deck& deck, const RawMesh& raw);
 
-struct CheckedInput {
-  Deck deck;
-  RawMesh raw; // on rank 0; empty elsewhere
-};
-
-/// Reads and checks deck and mesh; nothing is written. Throws UserError on every rank. Collective.
-CheckedInput read_input(MPI_Comm comm, const std::string& deck_path, const FreeMeshing& meshing = {});
+/// The mesh of a deck, read and checked against it, on rank 0; empty elsewhere. Nothing is written. Throws UserError on
+/// every rank. Collective.
+RawMesh read_checked_mesh(MPI_Comm comm, const Deck& deck, const FreeMeshing& meshing = {});
 
 } // namespace amontons

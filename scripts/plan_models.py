@@ -64,6 +64,18 @@ def cost_law(unknowns, costs, exponent):
     return CostLaw(float(start), float(rate), exponent)
 
 
+FURTHER = 4.0  # times the unknowns of the largest pilot: a larger plan asks for one more
+GROWTH = 3.0  # of the unknowns from one such pilot to the next
+
+
+def further_pilot(planned, largest, most, dim):
+    """Cell size of one more pilot over that of the largest, for a plan of `planned` unknowns; None where pilots are near enough
+    to the plan or to `most` unknowns. A small deck's pilots are as small, and mostly show what every run costs."""
+    if 2 * largest > most or planned < FURTHER * largest:
+        return None
+    return min(GROWTH, most / largest)**(-1.0 / dim)
+
+
 def errors_of_values(sizes, values):
     """Relative errors of the values of a figure on meshes of these sizes (coarse to fine), against Richardson's limit."""
     limit, uncertainty, order = extrapolate(sizes, values)

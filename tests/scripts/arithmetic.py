@@ -342,6 +342,12 @@ class Plans(unittest.TestCase):
         self.assertEqual(constant.rate, 0.0)
         self.assertGreater(constant(1e6), 0.0)
 
+    def test_further_pilot(self):
+        self.assertIsNone(plan_models.further_pilot(1999, 500, 10000, 2))  # near enough to the plan
+        self.assertIsNone(plan_models.further_pilot(1e6, 5001, 10000, 2))  # as large as pilots may be
+        self.assertAlmostEqual(500 / plan_models.further_pilot(2000, 500, 10000, 2)**2, 1500)
+        self.assertAlmostEqual(6400 / plan_models.further_pilot(1e6, 6400, 16000, 3)**3, 16000)
+
     def test_errors_of_values(self):
         found = plan_models.errors_of_values([0.4, 0.2, 0.1], [5.0 + 0.4**1.5, 5.0 + 0.2**1.5, 5.0 + 0.1**1.5])
         for error, size in zip(found, (0.4, 0.2, 0.1)):

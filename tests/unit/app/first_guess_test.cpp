@@ -33,7 +33,7 @@ std::unique_ptr<Scene> small_scene(const std::string& name, const std::vector<Re
   }
   const auto path = std::filesystem::temp_directory_path() / "amontons_first_guess_test.yaml";
   on_root(PETSC_COMM_WORLD, [&] { std::ofstream(path) << deck; });
-  auto scene = build_scene(PETSC_COMM_WORLD, path.string());
+  auto scene = build_scene(PETSC_COMM_WORLD, read_deck(PETSC_COMM_WORLD, path.string()));
   on_root(PETSC_COMM_WORLD, [&] { std::filesystem::remove(path); });
   return scene;
 }

@@ -73,8 +73,8 @@ TEST_CASE("a mutated mesh is distributed or refused, and a refusal says which fi
     if (i > 0 && i < first) continue;
     folder.write("mesh.msh", text);
     try {
-      const auto input = read_input(PETSC_COMM_SELF, path);
-      distribute_mesh(PETSC_COMM_SELF, input.raw, contact_hints(input.deck), 0);
+      const auto deck = read_deck(PETSC_COMM_SELF, path);
+      distribute_mesh(PETSC_COMM_SELF, read_checked_mesh(PETSC_COMM_SELF, deck), contact_hints(deck), 0);
       ++read;
     } catch (const UserError& error) {
       ++refused;

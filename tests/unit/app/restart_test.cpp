@@ -32,7 +32,7 @@ std::unique_ptr<Scene> scene() {
   text.replace(text.find("MESHES"), 6, std::string(AMONTONS_SOURCE_DIR) + "/tests/refused/meshes");
   const auto path = std::filesystem::temp_directory_path() / "amontons_restart_test.yaml";
   on_root(PETSC_COMM_WORLD, [&] { std::ofstream(path) << text; });
-  auto built = build_scene(PETSC_COMM_WORLD, path.string());
+  auto built = build_scene(PETSC_COMM_WORLD, read_deck(PETSC_COMM_WORLD, path.string()));
   on_root(PETSC_COMM_WORLD, [&] { std::filesystem::remove(path); });
   return built;
 }
