@@ -114,6 +114,21 @@ TaggedRule<MasterDeck> master_rule() {
                 "Directions out of the rigid body of the two faces that meet in the edge.")
       .required("radius", &CornerDeck::radius, number("length", Range::above(0)), "Radius of the rounding.")
       .optional("displacement", &CornerDeck::displacement, components("length"), moves);
+  WordRule<BoxPart> part;
+  part.word("punch", BoxPart::Punch, "Solid inside the rectangle.")
+      .word("die", BoxPart::Die, "Solid outside the rectangle, which is its opening.");
+  ObjectRule<RoundedBoxDeck> box;
+  box.required("part", &RoundedBoxDeck::part, part, "Which side of the rectangle is solid.")
+      .required("point", &RoundedBoxDeck::point, point(), "Middle of the rectangle, in the flat face.")
+      .required("normal", &RoundedBoxDeck::normal, direction(), "Direction out of the rigid body at its flat face.")
+      .required("side", &RoundedBoxDeck::side, direction(), "Direction across a pair of walls; orthogonal to normal.")
+      .required("half_widths", &RoundedBoxDeck::half_widths, list_of(number("length", Range::above(0)), 2, 2),
+                "Of the rectangle, along side and across it.")
+      .required("corner_radius", &RoundedBoxDeck::corner_radius, number("length", Range::above(0)),
+                "Radius of the rectangle's corners; at most the smaller half width, which makes round ends of it.")
+      .required("edge_radius", &RoundedBoxDeck::edge_radius, number("length", Range::above(0)),
+                "Radius of the edge between face and walls; of a punch at most the corner radius.")
+      .optional("displacement", &RoundedBoxDeck::displacement, components("length"), moves);
   TaggedRule<MasterDeck> rule;
   rule.bare(located(text(group_meaning)))
       .tag("plane", plane, "Rigid half-space.")
@@ -121,7 +136,10 @@ TaggedRule<MasterDeck> master_rule() {
       .tag("cylinder", cylinder, "Rigid cylinder of infinite length; a disc in plane strain and plane stress.")
       .tag("corner", corner,
            "Rigid body with two plane faces and a rounded convex edge between them, such as a die or a punch; when "
-           "axisymmetric, its turned form: one face a cone, a cylinder or a disc.");
+           "axisymmetric, its turned form: one face a cone, a cylinder or a disc.")
+      .tag("rounded_box", box,
+           "Rigid punch or die for boxes, with space: solid: a flat face that ends in a rounded edge along a "
+           "rectangle with rounded corners, and walls without end.");
   return rule;
 }
 

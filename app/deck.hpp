@@ -5,6 +5,7 @@
 #include "base/expression.hpp"
 #include "deck/located.hpp"
 #include "friction/friction_law.hpp"
+#include "geometry/rounded_box.hpp"
 #include "material/bulk_material.hpp"
 #include "math/space.hpp"
 
@@ -69,7 +70,18 @@ struct CornerDeck {
   double radius = 0.0;
   VectorDeck displacement;
 };
-using MasterDeck = std::variant<Located<std::string>, PlaneDeck, SphereDeck, CylinderDeck, CornerDeck>;
+/// A flat face that ends in a rounded edge along a rectangle with rounded corners; 3D only.
+struct RoundedBoxDeck {
+  BoxPart part = BoxPart::Punch;
+  std::vector<double> point;  // middle of the rectangle
+  std::vector<double> normal; // of the face
+  std::vector<double> side;   // across a pair of walls
+  std::vector<double> half_widths;
+  double corner_radius = 0.0;
+  double edge_radius = 0.0;
+  VectorDeck displacement;
+};
+using MasterDeck = std::variant<Located<std::string>, PlaneDeck, SphereDeck, CylinderDeck, CornerDeck, RoundedBoxDeck>;
 
 struct PenaltyDeck {
   double alpha = 30.0;

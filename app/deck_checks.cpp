@@ -221,6 +221,12 @@ bool are_parallel(const std::vector<double>& one, const std::vector<double>& oth
   return 1.0 - cosine_squared < 1e-12;
 }
 
+/// Vectors of one length.
+bool are_orthogonal(const std::vector<double>& one, const std::vector<double>& other) {
+  const auto dot = [](const auto& a, const auto& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); };
+  return std::pow(dot(one, other), 2) <= 1e-20 * dot(one, one) * dot(other, other);
+}
+
 /// Checks of one rigid shape, written under `tag` of contact[i].master.
 struct ShapeCheck {
   const Check& check;
@@ -279,9 +285,25 @@ struct ShapeCheck {
     if (are_parallel(corner.normals[0], corner.normals[1]))
       fail("normals", " are parallel, so the faces do not meet in an edge. Give two directions, or use a plane.");
   }
+  void operator()(const RoundedBoxDeck& box) const {
+    if (check.space_is_known() && check.deck.dim() != 3)
+      return fail("part", ": a rounded box needs space: solid. Use a corner, whose section it is.");
+    length("point", box.point);
+    direction("normal", box.normal);
+    direction("side", box.side);
+    displacement(box.displacement);
+    if (box.normal.size() == box.side.size() && !are_orthogonal(box.normal, box.side))
+      fail("side", " is not orthogonal to normal. Give a direction in the flat face.");
+    if (box.corner_radius > std::min(box.half_widths[0], box.half_widths[1]))
+      fail("corner_radius", " is larger than a half width. Give at most the smaller one.");
+    if (box.part == BoxPart::Punch && box.edge_radius > box.corner_radius)
+      fail("edge_radius", " of a punch is larger than its corner radius, so that the edge would have a crease. Give at "
+                          "most the corner radius.");
+  }
 };
 
-const std::string shape_tags[] = {"", "plane", "sphere", "cylinder", "corner"}; // in the order of MasterDeck
+const std::string shape_tags[] = {"",         "plane",  "sphere",
+                                  "cylinder", "corner", "rounded_box"}; // in the order of MasterDeck
 
 bool is_bound(const EnforceDeck& enforce) { return std::holds_alternative<ViDeck>(enforce); }
 

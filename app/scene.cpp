@@ -135,6 +135,16 @@ std::variant<std::string, RigidMaster> make_master(const MasterDeck& master) {
                                                      {unit(padded(corner.normals[0])), unit(padded(corner.normals[1]))},
                                                      corner.radius),
                                       corner.displacement};
+                 },
+                 [](const RoundedBoxDeck& box) -> Result {
+                   return RigidMaster{RigidRoundedBox{.part = box.part,
+                                                      .point = padded(box.point),
+                                                      .normal = unit(padded(box.normal)),
+                                                      .side = unit(padded(box.side)),
+                                                      .half_width = {box.half_widths[0], box.half_widths[1]},
+                                                      .corner_radius = box.corner_radius,
+                                                      .edge_radius = box.edge_radius},
+                                      box.displacement};
                  }},
       master);
 }

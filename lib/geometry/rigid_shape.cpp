@@ -84,6 +84,11 @@ RigidContact distance_to(const RigidCorner& corner, std::span<const double> shif
   return around(r, corner.radius, first);
 }
 
+RigidContact distance_to(const RigidRoundedBox& box, std::span<const double> shift, std::span<const double> x) {
+  const auto place = place_at(box, relative(x, shift, box.point));
+  return {place.gap, place.normal};
+}
+
 /// Distance from the centre or the axis, with `axis` zero for a ball: the normal turns by (1 − n ⊗ n − a ⊗ a) / r.
 std::array<Vector, 3> turning(const RigidContact& contact, double radius, const Vector& axis) {
   const double r = contact.gap + radius;
@@ -118,6 +123,9 @@ struct NormalGradient {
   std::array<Vector, 3> operator()(const RigidCorner& corner) const {
     if (!across_edge(corner, relative(x, shift, corner.centre)).on_rounding()) return {};
     return turning(contact, corner.radius, edge(corner));
+  }
+  std::array<Vector, 3> operator()(const RigidRoundedBox& box) const {
+    return place_at(box, relative(x, shift, box.point)).normal_gradient;
   }
 };
 

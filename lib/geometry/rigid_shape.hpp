@@ -1,5 +1,8 @@
-// Rigid obstacles given by formula: signed distance and normal of a plane, a ball, a cylinder, a rounded corner.
+// Rigid obstacles given by formula: signed distance and normal of a plane, a ball, a cylinder, a rounded corner, a
+// rounded box.
 #pragma once
+
+#include "geometry/rounded_box.hpp"
 
 #include <array>
 #include <span>
@@ -29,7 +32,7 @@ struct RigidCorner {
   std::array<std::array<double, 3>, 2> normals{}; // of the two faces (unit, not parallel), out of the rigid body
   double radius = 0.0;
 };
-using RigidShape = std::variant<RigidPlane, RigidSphere, RigidCylinder, RigidCorner>;
+using RigidShape = std::variant<RigidPlane, RigidSphere, RigidCylinder, RigidCorner, RigidRoundedBox>;
 
 /// The corner whose faces go through `apex`, a point of the edge that they would have without the rounding.
 RigidCorner rounded_corner(const std::array<double, 3>& apex, const std::array<std::array<double, 3>, 2>& normals,

@@ -1,6 +1,8 @@
 """Metal forming and rolling: contact, friction, large strain and plastic flow together."""
 import numpy as np
 
+from harness import load_deck
+
 # --- a billet upset between plates ------------------------------------------------------------------------------------
 
 RADIUS, HALF_HEIGHT = 10.0, 15.0
@@ -233,8 +235,86 @@ def deep_drawing_ranks(bench):
         bench.close(f"{way:g} mm: force on the punch", punch_force(two, way), punch_force(one, way), 1e-4)
 
 
+# --- a cup drawn from a square sheet ----------------------------------------------------------------------------------
+
+
+def round_cup(deck, cup, parameters):
+    """Changes of the square cup's deck that make the round `cup` of it, the deck of the axisymmetric scene: a box whose
+    corners are as wide as itself is round. A quarter of the holder's force."""
+    changes = {"mesh.parameters": {"round": 1, "blank": 36, "t": 1, "flat": 12, "inside": 22, "outside": 40, "thick": 6, **parameters}}
+    changes["materials.aluminium"] = cup["materials"]["sheet_steel"]
+    changes["boundary.2.resultant.z"] = 0.25 * cup["boundary"][1]["resultant"]["y"]
+    changes["contact"] = deck["contact"]
+    for pair, corner in zip(changes["contact"], cup["contact"]):
+        pair["friction"] = corner["friction"]
+        if "rounded_box" in pair["master"]:
+            shape, box = corner["master"]["corner"], pair["master"]["rounded_box"]
+            radius, height = shape["point"]
+            box.update(point=[0, 0, height], half_widths=[radius, radius], corner_radius=radius, edge_radius=shape["radius"])
+    return changes
+
+
+def check_round(bench, parameters, cells, ways, tolerance):
+    """A quarter of a round cup between rounded boxes against the axisymmetric cup between corners, `cells` along the radius."""
+    automatic = {"first": 0.1, "largest": 0.5, "target_iterations": 20}
+    steps = {"steps": [{"name": f"to_{way}", "to": way, "increments": {"auto": automatic}} for way in ways]}
+    cup = load_deck("deep_drawing")
+    changes = round_cup(load_deck("square_cup"), cup, parameters)
+    solid = bench.run("square_cup", {**changes, **steps}, ranks=1)
+    # Without stops: there is nothing in the solid model that shares the holder's force.
+    flat = {"contact": cup["contact"][:3], "mesh.parameters": {"n": cells, "layers": 1}}
+    turned = bench.run("deep_drawing", {**flat, **steps}, ranks=1)
+    for way in ways:
+        for pair, limit in (("punch", tolerance), ("die", 0.01), ("holder", 1e-6)):
+            along, up = solid.history[f"contact_{pair}_force_z"], turned.history[f"contact_{pair}_force_y"]
+            force, reference = np.interp(way, solid.history["time"], along), np.interp(way, turned.history["time"], up)
+            bench.close(f"{way} mm: force of the {pair}, four quarters", 4.0 * force, reference, limit)
+
+
+def square_cup_round(bench):
+    """The first 2 mm of a round cup, cells of 3 mm in both models."""
+    check_round(bench, {"n": 8, "m": 2}, 12, (1, 2), 0.04)
+
+
+def square_cup_fine(bench):
+    """The first 4 mm of a round cup, cells of 1.5 mm in both models."""
+    check_round(bench, {"n": 16, "m": 4}, 24, (2, 4), 0.02)
+
+
+def node_of(results, x, y, z):
+    """The sheet's node that was at a place."""
+    near = np.linalg.norm(results.places - (x, y, z), axis=1) < 1e-6
+    (node,) = np.flatnonzero(near & results.in_body("sheet"))
+    return node
+
+
+def square_cup_drawn(bench):
+    """The square cup: both halves alike, the rim's middle under hoop compression alone, less drawn in at the corners."""
+    results = bench.run("square_cup", ranks=1)
+    places, moved, half, thick = results.places, results.nodal["displacement"], 75.0, 0.81
+    order = np.lexsort(np.round(places.T, 6))
+    mirrored = np.lexsort(np.round(places[:, [1, 0, 2]].T, 6))
+    difference = np.abs(moved[order] - moved[mirrored][:, [1, 0, 2]]).max()
+    bench.below("difference of the two halves / way of the punch", difference / results.time, 1e-8)
+    # Stretch along the rim at its middle: y = Y (stretch + c Y^2) by symmetry, from the nodes of its first cell.
+    stretch = []
+    for z in (0.0, thick):
+        one, two = (1.0 + moved[node_of(results, half, y, z)][1] / y for y in (half / 8.0, half / 4.0))
+        stretch.append((4.0 * one - two) / 3.0)
+    now = places + moved
+    rim = np.linalg.norm(now[node_of(results, half, 0, thick)] - now[node_of(results, half, 0, 0)])
+    bench.close("thickness in the middle of the rim", rim, thick / np.sqrt(np.mean(stretch)), 0.02)
+    side = -moved[node_of(results, half, 0, 0)][0]
+    diagonal = np.hypot(*moved[node_of(results, half, half, 0)][:2])
+    print(f"     draw-in: {side:.3f} in the middle of a side, {diagonal:.3f} at a corner")
+    bench.below("draw-in at the corner / at the side", diagonal / side, 0.8)
+    work, stored, dissipated = (results.history[f"energy_{name}"][-1] for name in ("external_work", "stored", "dissipated"))
+    bench.below("work not accounted for / work", abs(work - stored - dissipated) / work, 0.02)
+
+
 CASES = {
     "upsetting": {"smooth": upsetting_smooth, "rough": upsetting_rough},
     "rolling_wheel": {"braked": wheel_braked, "turn": wheel_turn},
     "deep_drawing": {"start": deep_drawing_start, "cup": deep_drawing_cup, "ranks": deep_drawing_ranks},
+    "square_cup": {"round": square_cup_round, "fine": square_cup_fine, "drawn": square_cup_drawn},
 }

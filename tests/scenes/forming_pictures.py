@@ -7,6 +7,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import matplotlib.tri as tri
 import numpy as np
 
 import forming_cases as cases
@@ -96,6 +97,30 @@ def deep_drawing(bench):
     return figure
 
 
+def square_cup(bench):
+    results = bench.run("square_cup", ranks=1)
+    now = results.places + results.nodal["displacement"]
+    sheet = np.flatnonzero(results.in_body("sheet") & (np.abs(results.places[:, 2]) < 1e-9))
+    plastic = results.nodal["accumulated_plastic_strain"].ravel()[sheet]
+    figure = plt.figure(figsize=(9, 3.8), layout="constrained")
+    left = figure.add_subplot(1, 2, 1, projection="3d")
+    x, y, z = now[sheet].T
+    corners = tri.Triangulation(*results.places[sheet, :2].T).triangles  # of the flat blank
+    shell = left.plot_trisurf(x, y, z, triangles=corners, cmap="viridis", linewidth=0.1)
+    shell.set_array(plastic[corners].mean(axis=1))
+    figure.colorbar(shell, ax=left, shrink=0.6, label="plastic strain")
+    left.set_aspect("equal")
+    left.view_init(35, 225)
+    left.set_title(f"way of the punch {results.time:g} mm", fontsize=10)
+    right = figure.add_subplot(1, 2, 2)
+    right.plot(results.history["time"], -4.0 * results.history["contact_punch_force_z"], color=SIMULATION["color"])
+    right.set_xlabel("way of the punch, mm")
+    right.set_ylabel("force of the whole punch, kN")
+    right.set_xlim(0.0)
+    right.set_ylim(0.0)
+    return figure
+
+
 def ring_crush(bench):
     crushed, pinched = bench.run("ring_crush"), bench.run("ring_crush", rings.pinch(16))
     figure, axes = plt.subplots(1, 3, figsize=(11, 3.6), layout="constrained", width_ratios=(1, 1, 1.3))
@@ -117,7 +142,7 @@ def ring_crush(bench):
     return figure
 
 
-SCENES = {function.__name__: function for function in (upsetting, rolling_wheel, deep_drawing, ring_crush)}
+SCENES = {function.__name__: function for function in (upsetting, rolling_wheel, deep_drawing, square_cup, ring_crush)}
 
 
 def main():

@@ -57,9 +57,13 @@ TEST_CASE("finite kinematics: tangent with the slave's normal, around an axis, a
     }
   check_tangent(*prepared({.enforcement = Semismooth{0}, .law = law, .space = Space::Axisymmetric}, Motion::Mixed,
                           Matrix3d::Identity()));
-  const RigidShape shapes[] = {RigidPlane{{0.0, 1.0, 1.0}, {0.0, 0.0, 1.0}}, RigidSphere{{0.5, 0.5, -0.3}, 1.3},
-                               RigidCylinder{{0.5, 0.5, 0.2}, {1.0, 0.0, 0.0}, 0.8},
-                               rounded_corner({0.5, 0.5, 1.1}, {{{0.0, -0.6, 0.8}, {0.0, 0.8, 0.6}}}, 0.4)};
+  const RigidShape shapes[] = {
+      RigidPlane{{0.0, 1.0, 1.0}, {0.0, 0.0, 1.0}},
+      RigidSphere{{0.5, 0.5, -0.3}, 1.3},
+      RigidCylinder{{0.5, 0.5, 0.2}, {1.0, 0.0, 0.0}, 0.8},
+      rounded_corner({0.5, 0.5, 1.1}, {{{0.0, -0.6, 0.8}, {0.0, 0.8, 0.6}}}, 0.4),
+      RigidRoundedBox{BoxPart::Punch, {-0.1, -0.1, 1.1}, {0, 0, 1}, {1, 0, 0}, {0.7, 0.7}, 0.5, 0.4},
+      RigidRoundedBox{BoxPart::Die, {-0.2, -0.2, 1.1}, {0, 0, 1}, {1, 0, 0}, {0.7, 0.7}, 0.3, 0.4}};
   for (const auto& shape : shapes) {
     CAPTURE(shape.index());
     const auto fixture =

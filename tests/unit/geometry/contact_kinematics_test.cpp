@@ -242,8 +242,10 @@ TEST_CASE("surface elements: stretch and spin are derivatives, rotation that of 
 }
 
 TEST_CASE("normals of rigid shapes turn as their gradient says") {
-  const RigidShape shapes[] = {RigidPlane{{0, 0, 0}, {0, 0.6, 0.8}}, RigidSphere{{0.1, 0.2, 0.3}, 0.5},
-                               RigidCylinder{{0.1, 0.2, 0.3}, {0.6, 0.0, 0.8}, 0.4}};
+  const RigidShape shapes[] = {
+      RigidPlane{{0, 0, 0}, {0, 0.6, 0.8}}, RigidSphere{{0.1, 0.2, 0.3}, 0.5},
+      RigidCylinder{{0.1, 0.2, 0.3}, {0.6, 0.0, 0.8}, 0.4},
+      RigidRoundedBox{BoxPart::Punch, {0, 0, 0.7}, {0, 0, 1}, {1, 0, 0}, {0.7, 0.5}, 0.4, 0.3}};
   const std::array<double, 3> shift = {0.05, -0.02, 0.01}, direction = {0.3, -0.7, 0.5};
   for (const auto& shape : shapes) {
     CAPTURE(shape.index());
