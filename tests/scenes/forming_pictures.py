@@ -3,16 +3,18 @@
 import argparse
 import tempfile
 
+import h5py
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import matplotlib.tri as tri
 import numpy as np
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 import forming_cases as cases
 import self_contact_cases as rings
-from harness import TOP, Bench
+from harness import CELL_NODES, TOP, Bench
 from solid_pictures import REFERENCE, SIMULATION, draw_deformed
 
 
@@ -121,6 +123,39 @@ def square_cup(bench):
     return figure
 
 
+def draw_tube(solid, section):
+    """Half of the tube in 3D as it is at the end, and its force beside that of its section."""
+    with h5py.File(solid.folder / "fields.h5", "r") as file:
+        topology = file["run0/surfaces/folds/topology"][:].ravel()
+    facets, at = [], 0
+    while at < len(topology):
+        facets.append(topology[at + 1 : at + 5])
+        at += 1 + CELL_NODES[topology[at]]
+    surface = solid.surface["folds"]
+    now = surface["places"] + surface["displacement"]
+    nodes = {tuple(np.round(place, 9)): i for i, place in enumerate(solid.places)}
+    plastic = solid.nodal["accumulated_plastic_strain"].ravel()[[nodes[tuple(np.round(p, 9))] for p in surface["places"]]]
+    figure = plt.figure(figsize=(9, 3.8), layout="constrained")
+    left = figure.add_subplot(1, 2, 1, projection="3d")
+    polygons = [now[facet] * mirror for mirror in ((1, 1, 1), (-1, 1, 1)) for facet in facets]
+    shell = Poly3DCollection(polygons, array=2 * [plastic[facet].mean() for facet in facets], edgecolor="k", linewidth=0.2)
+    left.add_collection3d(shell)
+    left.set(xlim=(-32, 32), ylim=(0, 32), zlim=(0, 10), title=f"half of it, shortened by {solid.time:.3g} mm", zticks=(0, 5, 10))
+    left.set_box_aspect((64, 32, 10), zoom=1.3)
+    left.view_init(30, -75)
+    figure.colorbar(shell, ax=left, shrink=0.6, label="plastic strain", location="bottom")
+    right = figure.add_subplot(1, 2, 2)
+    right.plot(section.history["time"], -1e-3 * section.history["reaction_top_y"], **REFERENCE, label="section")
+    right.plot(solid.history["time"], -4e-3 * solid.history["reaction_top_z"], **SIMULATION)
+    right.set(xlabel="shortening, mm", ylabel="force, kN", ylim=(0, 80))
+    right.legend()
+    return figure
+
+
+def tube_buckling_3d(bench):
+    return draw_tube(*rings.quarter_and_section_runs(bench, rings.tube_steps(12.7)))
+
+
 def ring_crush(bench):
     crushed, pinched = bench.run("ring_crush"), bench.run("ring_crush", rings.pinch(16))
     figure, axes = plt.subplots(1, 3, figsize=(11, 3.6), layout="constrained", width_ratios=(1, 1, 1.3))
@@ -142,7 +177,7 @@ def ring_crush(bench):
     return figure
 
 
-SCENES = {function.__name__: function for function in (upsetting, rolling_wheel, deep_drawing, square_cup, ring_crush)}
+SCENES = {function.__name__: function for function in (upsetting, rolling_wheel, deep_drawing, square_cup, tube_buckling_3d, ring_crush)}
 
 
 def main():

@@ -205,17 +205,25 @@ def ten_discs(bench):
         bench.below(f"{ranks} ranks: displacement", error, 1e-6)
 
 
-def quarter_and_section(bench, steps, around=5):
-    """Forces of the full turn in the history of the tube in 3D, a quarter with this many cells around, and of its section, both
-    with these steps."""
+def tube_steps(end):
+    """Those of tube_buckling_3d, crushed to `end`."""
+    steps = load_deck("tube_buckling_3d")["steps"]
+    steps[-1]["to"] = end
+    return steps
+
+
+def quarter_and_section_runs(bench, steps, around=5):
+    """The tube in 3D, a quarter with this many cells around, and its section, both with these steps."""
     solid = bench.run("tube_buckling_3d", {"steps": steps, "mesh.parameters.around": around}, ranks=1)
     parameters = {key: value for key, value in solid.deck["mesh"]["parameters"].items() if key != "around"}
     changes = {"mesh.parameters": parameters, "contact.2.master.plane.point": [0, parameters["L"]], "steps": steps}
-    section = bench.run("tube_buckling_2d", changes, ranks=1)
-    return [
-        turn * run.history[name]
-        for run, turn, name in ((solid, -4.0, "reaction_top_z"), (section, -1.0, "reaction_top_y"))
-    ]
+    return solid, bench.run("tube_buckling_2d", changes, ranks=1)
+
+
+def quarter_and_section(bench, steps, around=5):
+    """Their forces, of the full turn."""
+    solid, section = quarter_and_section_runs(bench, steps, around)
+    return -4.0 * solid.history["reaction_top_z"], -section.history["reaction_top_y"]
 
 
 def tube_quarter_peak(bench):
