@@ -435,10 +435,11 @@ void ContactForm::multiplier_defect(const State& state, std::vector<double>& def
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto nodes = points_.slave().facet(points[i].facet);
     const auto shape = points_.multiplier_shape(points[i]);
+    const double weight = points[i].weight / points[i].epsilon;
     for (std::size_t a = 0; a < shape.size(); ++a) {
       const auto at = position_[nodes[a]];
-      defect[at] += points[i].weight * shape[a] * (sigma(i) - multipliers_[at]);
-      mass[at] += points[i].weight * shape[a];
+      defect[at] += weight * shape[a] * (sigma(i) - multipliers_[at]);
+      mass[at] += weight * shape[a];
     }
   }
 }

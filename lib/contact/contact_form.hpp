@@ -69,7 +69,8 @@ class ContactForm : public Form, public PairReport, public Switching {
   double multiplier_scale() const override { return scale_; }
   const std::vector<double>& multipliers() const override { return multipliers_; }
   void hold_multipliers(std::vector<double> multipliers) override;
-  /// This rank's parts of ∫ N_i (σ − λ_i) and ∫ N_i at nodes(). Collective.
+  /// This rank's parts of ∫ N_i (σ − λ_i) / ε, by which the potential falls with λ_i, and of ∫ N_i / ε at nodes(). Where
+  /// facets differ in size, so does ε: without it the loop would end at another state than semismooth. Collective.
   void multiplier_defect(const State& state, std::vector<double>& defect, std::vector<double>& mass);
 
   /// Absent without friction.

@@ -388,10 +388,11 @@ std::vector<std::vector<double>> TangentialPart::multiplier_defect() const {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto nodes = points_.slave().facet(points[i].facet);
     const auto shape = points_.multiplier_shape(points[i]);
+    const double weight = points[i].weight / points[i].epsilon;
     for (std::size_t a = 0; a < shape.size(); ++a)
       for (std::size_t c = 0; c < defect.size(); ++c) {
         const auto at = position_[nodes[a]];
-        defect[c][at] += points[i].weight * shape[a] * (responses_[i].traction[c] - multipliers_[c][at]);
+        defect[c][at] += weight * shape[a] * (responses_[i].traction[c] - multipliers_[c][at]);
       }
   }
   return defect;

@@ -75,7 +75,7 @@ class TangentialPart {
   /// Cartesian components of λ_t at the pair's multiplier nodes: traction.
   const std::vector<std::vector<double>>& multipliers() const { return multipliers_; }
   void hold_multipliers(std::vector<std::vector<double>> multipliers) { multipliers_ = std::move(multipliers); }
-  /// This rank's parts of ∫ N_i (σ_t − λ_t,i) at the nodes, component by component.
+  /// This rank's parts of ∫ N_i (σ_t − λ_t,i) / ε at the nodes, component by component.
   std::vector<std::vector<double>> multiplier_defect() const;
 
   TangentialSums sums() const;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <doctest/doctest.h>
+#include <numeric>
 
 using namespace amontons;
 using namespace amontons::test;
@@ -228,6 +229,35 @@ TEST_CASE("rigid masters: plane, sphere and their motion") {
   for (const auto& point : on_ball.points()) {
     const double r = std::hypot(point.place[0] - 0.5, point.place[1] - 0.5);
     CHECK(point.gap0 == doctest::Approx(std::hypot(r, 1.0) - 1.0));
+  }
+}
+
+TEST_CASE("the defect of held multipliers is the potential's derivative") {
+  for (const int dim : {2, 3}) {
+    CAPTURE(dim);
+    Fixture fixture(dim, Uzawa{});
+    const auto state = fixture.problem->state_at(fixture.u);
+    const auto sum = [](double mine) {
+      MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+      return mine;
+    };
+    const auto held = fixture.form->multipliers();
+    std::vector<double> defect, mass, direction;
+    for (const auto node : fixture.form->nodes().nodes)
+      direction.push_back(0.01 * std::cos(3.0 * fixture.mesh.position(node)[0]));
+    const auto energy_at = [&](double step) {
+      auto multipliers = held;
+      for (std::size_t i = 0; i < multipliers.size(); ++i)
+        multipliers[i] += step * direction[i];
+      fixture.form->hold_multipliers(multipliers);
+      return sum(fixture.form->stored_energy(state));
+    };
+    const double difference = (energy_at(1e-3) - energy_at(-1e-3)) / 2e-3;
+    fixture.form->hold_multipliers(held);
+    fixture.form->multiplier_defect(state, defect, mass);
+    const double derivative = sum(std::inner_product(defect.begin(), defect.end(), direction.begin(), 0.0));
+    CHECK(std::abs(derivative) > 1e-6);
+    CHECK(difference == doctest::Approx(derivative).epsilon(1e-6));
   }
 }
 
