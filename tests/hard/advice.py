@@ -4,13 +4,11 @@
 Each run of the table that is refused though its scene has a solution. It must end with the status and the words below;
 the deck is changed as the words say, and must then be certified and meet the scene's own figures.
 """
-import argparse
-import sys
-import tempfile
 from pathlib import Path
 
 import finite_scenes  # noqa: F401 (adds to the table)
 import yaml
+from cases import run_cases
 from run import ENFORCE, PENALTY_TOLERANCE, Results, start
 from scenes import SCENES
 
@@ -68,21 +66,5 @@ def examine(options, case, root):
     return faults
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("cases", nargs="*", metavar="CASE", help=", ".join(CASES))
-    parser.add_argument("--program", required=True, help="the amontons executable")
-    parser.add_argument("--mpirun", default="mpirun --oversubscribe --bind-to none", help="how ranks are started")
-    options = parser.parse_args()
-    options.program = str(Path(options.program).resolve())
-    failed = 0
-    with tempfile.TemporaryDirectory() as root:
-        for case in options.cases or CASES:
-            faults = examine(options, case, root)
-            failed += bool(faults)
-            print(f"{'FAIL' if faults else 'ok  '} {case} {'; '.join(faults)}", flush=True)
-    return 1 if failed else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    run_cases(__doc__, CASES, examine)

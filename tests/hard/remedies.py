@@ -6,13 +6,11 @@ A tall block pushed at its top, which rocks on its edge, a ridge under a ridge, 
 steps that plain iterations do not get through. Each case is run with no remedy, must end with status 3 and a diagnosis,
 and with one, must be certified, meet the scene's own figures, and say in the summary that the remedy has helped. A run that gives up must leave a checkpoint and its last iterate.
 """
-import argparse
 import json
-import sys
-import tempfile
 from pathlib import Path
 
 import yaml
+from cases import run_cases
 from run import PENALTY_TOLERANCE, Results, start
 from scenes import SCENES
 
@@ -75,21 +73,5 @@ def examine(options, case, root):
     return faults
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("cases", nargs="*", metavar="CASE", help=", ".join(CASES))
-    parser.add_argument("--program", required=True, help="the amontons executable")
-    parser.add_argument("--mpirun", default="mpirun --oversubscribe --bind-to none", help="how ranks are started")
-    options = parser.parse_args()
-    options.program = str(Path(options.program).resolve())
-    failed = 0
-    with tempfile.TemporaryDirectory() as root:
-        for case in options.cases or CASES:
-            faults = examine(options, case, root)
-            failed += bool(faults)
-            print(f"{'FAIL' if faults else 'ok  '} {case} {'; '.join(faults)}", flush=True)
-    return 1 if failed else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    run_cases(__doc__, CASES, examine)
