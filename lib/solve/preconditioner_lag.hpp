@@ -1,7 +1,8 @@
 // When to set up the preconditioner of a Krylov method anew. Tangents of a contact problem in small strains differ on
-// the contact surface only, and a multigrid hierarchy of an earlier one serves as long as it converges at nearly its
-// first rate. The first tangent of an increment takes all points for sticking and is symmetric, which suits multigrid
-// best.
+// the contact surface only, and a multigrid hierarchy of an earlier one serves, at a slower rate than its first one. A
+// new one is made when the iterations that this has cost since the last are worth one: never more than twice what the
+// best choice of set-ups would have cost, and no set-up for a few slow solves. The first tangent of an increment takes
+// all points for sticking and is symmetric, which suits multigrid best.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -20,6 +21,7 @@ class PreconditionerLag {
 
  private:
   double first_rate_ = 0.0; // iterations per digit of the first solve after the last set-up; 0: not known yet
+  double spent_ = 0.0;      // iterations above that rate since then
   bool is_set_up_ = false, rebuilds_ = false;
 };
 
