@@ -1,8 +1,7 @@
 // Two blocks in contact in finite kinematics whose places are given by formulas: for tests of forces and tangents.
 #pragma once
 
-#include "contact/contact_form.hpp"
-#include "form/problem.hpp"
+#include "lone_pair.hpp"
 #include "two_blocks.hpp"
 
 #include <Eigen/Geometry>
@@ -35,12 +34,6 @@ struct Scene {
 /// A deformation: from reference to current places. `upper`: of the upper block.
 using Deformation = std::function<Vector3d(const Vector3d& X, bool upper)>;
 
-/// In [-1, 1], from the place alone: the same on any number of ranks.
-inline double noise(const Vector3d& X, int component, int seed) {
-  const double s = std::sin(12.9898 * X[0] + 78.233 * X[1] + 37.719 * X[2] + 4.1 * component + 1.7 * seed) * 43758.5453;
-  return 2.0 * (s - std::floor(s)) - 1.0;
-}
-
 inline RawMesh shaped_blocks(const Scene& scene) {
   auto raw = two_blocks(scene.comm, scene.dim, scene.cells, scene.cells + 1, scene.gap, scene.order);
   for (std::size_t at = 0; scene.shape && at < raw.coordinates.size(); at += 3)
@@ -48,38 +41,27 @@ inline RawMesh shaped_blocks(const Scene& scene) {
   return raw;
 }
 
-struct Fixture {
+inline ContactPair pair_of(const Scene& scene) {
+  ContactPair pair{.name = "interface",
+                   .slave = "upper_bottom",
+                   .master = scene.master,
+                   .enforcement = scene.enforcement,
+                   .projection = scene.projection,
+                   .kinematics = Kinematics::Finite,
+                   .space = scene.dim == 3 ? Space::Solid : scene.space,
+                   .stiffness = {100.0, 300.0}};
+  pair.smoothing = scene.smoothing;
+  pair.alpha = 3.0;
+  pair.search_distance = scene.search_distance;
+  if (scene.law) pair.friction = Friction{.law = *scene.law, .factor = std::nullopt};
+  return pair;
+}
+
+struct Fixture : LonePair {
   Scene scene;
-  Mesh mesh;
-  std::vector<NodeField> fields;
-  std::unique_ptr<DofLayout> layout;
-  std::unique_ptr<Problem> problem;
-  ContactForm* form = nullptr;
-  VecHandle u;
 
   explicit Fixture(const Scene& s)
-      : scene(s), mesh(distribute_mesh(s.comm, shaped_blocks(s), {{"upper_bottom", "lower_top"}}, 0)) {
-    const bool unknown = std::holds_alternative<Semismooth>(scene.enforcement);
-    if (unknown) fields.assign(scene.law ? 1 + scene.dim : 1, multiplier_nodes(mesh, "interface", "upper_bottom"));
-    layout = std::make_unique<DofLayout>(mesh, std::vector<TiedGroup>{}, fields);
-    ContactPair pair{.name = "interface",
-                     .slave = "upper_bottom",
-                     .master = scene.master,
-                     .enforcement = scene.enforcement,
-                     .projection = scene.projection,
-                     .kinematics = Kinematics::Finite,
-                     .space = scene.dim == 3 ? Space::Solid : scene.space,
-                     .stiffness = {100.0, 300.0}};
-    pair.smoothing = scene.smoothing;
-    pair.alpha = 3.0;
-    pair.search_distance = scene.search_distance;
-    if (scene.law) pair.friction = Friction{.law = *scene.law, .factor = std::nullopt, .field = unknown ? 1 : -1};
-    auto contact = std::make_unique<ContactForm>(*layout, std::move(pair));
-    form = contact.get();
-    std::vector<std::unique_ptr<Form>> forms;
-    forms.push_back(std::move(contact));
-    problem = std::make_unique<Problem>(*layout, std::move(forms), std::vector<PrescribedDisplacement>{});
-    u = layout->new_vector();
+      : LonePair(distribute_mesh(s.comm, shaped_blocks(s), {{"upper_bottom", "lower_top"}}, 0), pair_of(s)), scene(s) {
     hold_multipliers(Matrix3d::Identity());
   }
 
@@ -98,12 +80,6 @@ struct Fixture {
     if (scene.law) form->tangential()->hold_multipliers(shear);
   }
 
-  Vector3d reference(std::int32_t node) const {
-    Vector3d X = Vector3d::Zero();
-    for (int c = 0; c < mesh.dim; ++c)
-      X[c] = mesh.position(node)[c];
-    return X;
-  }
   bool is_upper(const Vector3d& X) const { return X[mesh.dim - 1] > 1.0 + 0.5 * scene.gap; }
 
   /// Displacements by formula, and unknown multipliers: shear turned by `turn`.
@@ -288,6 +264,40 @@ inline void prepare(Fixture& fixture, Motion motion, const Matrix3d& turn, int s
   };
   fixture.set(fixture.u, turned(moved, turn), turn);
   fixture.problem->begin_increment(1.0, fixture.u);
+}
+
+/// Forces on nodes turn with a rigid motion of everything in the increment; they and their moments add up to nothing
+/// but for these parts of the sum of their sizes.
+inline void check_rigid_motion(const Scene& scene, Motion motion, double force_tolerance, double moment_tolerance) {
+  const int dim = scene.dim;
+  const auto turn = turn_of(dim);
+  Fixture straight(scene), rotated(scene);
+  prepare(straight, motion, Matrix3d::Identity());
+  prepare(rotated, motion, turn);
+  const auto a = straight.layout->new_vector(), b = rotated.layout->new_vector();
+  straight.problem->residual(straight.u, a);
+  rotated.problem->residual(rotated.u, b);
+  double worst = 0.0, sums[7] = {}; // force, moment, absolute
+  {
+    VecReader fa(a), fb(b), u(rotated.u);
+    for (std::int32_t node = 0; node < straight.mesh.num_owned; ++node) {
+      Vector3d one = Vector3d::Zero(), other = Vector3d::Zero(), x = rotated.reference(node);
+      for (int c = 0; c < dim; ++c) {
+        one[c] = fa[node * dim + c];
+        other[c] = fb[node * dim + c];
+        x[c] += u[node * dim + c];
+      }
+      worst = std::max(worst, (turn * one - other).norm());
+      Vector3d::Map(sums) += other;
+      Vector3d::Map(sums + 3) += x.cross(other);
+      sums[6] += other.norm();
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  CHECK(sums[6] > 0.1);
+  CHECK(worst <= 1e-11 * sums[6]);
+  for (int c = 0; c < 6; ++c)
+    CHECK(std::abs(sums[c]) <= (c < 3 ? force_tolerance : moment_tolerance) * sums[6]);
 }
 
 /// The first of some random states that is not next to a change of status or facet.

@@ -1,6 +1,5 @@
 // The contact pair as a form: search across ranks, residual against the potential, tangent against the residual.
-#include "contact/contact_form.hpp"
-#include "form/problem.hpp"
+#include "lone_pair.hpp"
 #include "two_blocks.hpp"
 
 #include <cmath>
@@ -12,13 +11,15 @@ using namespace amontons::test;
 
 namespace {
 
-ContactPair declare_pair(const Mesh& mesh, Enforcement enforcement) {
+ContactPair declare_pair(int dim, Enforcement enforcement, ProjectionKind projection = {},
+                         Integration integration = {}) {
   ContactPair pair{.name = "interface",
                    .slave = "upper_bottom",
                    .master = std::string("lower_top"),
                    .enforcement = enforcement,
-                   .projection = {},
-                   .space = mesh.dim == 2 ? Space::PlaneStrain : Space::Solid,
+                   .projection = projection,
+                   .integration = integration,
+                   .space = dim == 2 ? Space::PlaneStrain : Space::Solid,
                    .stiffness = {}};
   pair.alpha = 3.0;
   pair.search_distance = 0.5;
@@ -26,29 +27,11 @@ ContactPair declare_pair(const Mesh& mesh, Enforcement enforcement) {
   return pair;
 }
 
-/// A layout, a problem of nothing but the contact pair, and smooth displacements that open one part and close another.
-struct Fixture {
-  Mesh mesh;
-  std::vector<NodeField> fields;
-  std::unique_ptr<DofLayout> layout;
-  std::unique_ptr<Problem> problem;
-  ContactForm* form = nullptr;
-  VecHandle u;
-
+/// Smooth displacements that open one part and close another.
+struct Fixture : LonePair {
   Fixture(int dim, Enforcement enforcement, ProjectionKind projection = {}, Integration integration = {})
-      : mesh(two_blocks_mesh(PETSC_COMM_WORLD, dim, 3, 4, 0.01)) {
-    if (std::holds_alternative<Semismooth>(enforcement))
-      fields.push_back(multiplier_nodes(mesh, "interface", "upper_bottom"));
-    layout = std::make_unique<DofLayout>(mesh, std::vector<TiedGroup>{}, fields);
-    auto pair = declare_pair(mesh, enforcement);
-    pair.projection = projection;
-    pair.integration = integration;
-    auto contact = std::make_unique<ContactForm>(*layout, std::move(pair));
-    form = contact.get();
-    std::vector<std::unique_ptr<Form>> forms;
-    forms.push_back(std::move(contact));
-    problem = std::make_unique<Problem>(*layout, std::move(forms), std::vector<PrescribedDisplacement>{});
-    u = layout->new_vector();
+      : LonePair(two_blocks_mesh(PETSC_COMM_WORLD, dim, 3, 4, 0.01),
+                 declare_pair(dim, enforcement, projection, integration)) {
     set(u, 0.0, 1.0);
     if (std::holds_alternative<Uzawa>(enforcement)) {
       std::vector<double> multipliers;
@@ -189,7 +172,7 @@ TEST_CASE("search finds the same gaps on any number of ranks, and nothing beyond
   for (const int dim : {2, 3}) {
     const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, dim, 3, 4, 0.01);
     const DofLayout layout(mesh, {}, {});
-    const auto pair = declare_pair(mesh, Penalty{});
+    const auto pair = declare_pair(mesh.dim, Penalty{});
     const ContactPoints points(layout, pair);
     double sums[3] = {};
     for (const auto& point : points.points()) {
@@ -212,7 +195,7 @@ TEST_CASE("search finds the same gaps on any number of ranks, and nothing beyond
 TEST_CASE("rigid masters: plane, sphere and their motion") {
   const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, 3, 2, 2, 0.0);
   const DofLayout layout(mesh, {}, {});
-  auto pair = declare_pair(mesh, Penalty{});
+  auto pair = declare_pair(mesh.dim, Penalty{});
   pair.slave = "top";
   pair.master = RigidMaster{RigidPlane{{0.0, 0.0, 2.1}, {0.0, 0.0, -1.0}},
                             {std::nullopt, std::nullopt, Expression("-0.2*t", {})}};
@@ -264,7 +247,7 @@ TEST_CASE("the defect of held multipliers is the potential's derivative") {
 TEST_CASE("bodies held by nothing else get a first guess where they are nearest") {
   const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, 2, 3, 4, 0.01);
   const DofLayout layout(mesh, {}, {});
-  auto pair = declare_pair(mesh, Penalty{});
+  auto pair = declare_pair(mesh.dim, Penalty{});
   pair.holds_floating_body = true;
   ContactForm form(layout, pair);
   const auto u = layout.new_vector();

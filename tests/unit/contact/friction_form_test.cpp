@@ -1,7 +1,6 @@
 // Friction in a contact pair as a form: tangent against residual in stick, slip and both, the traction against closed
 // forms, history, invariance.
-#include "contact/contact_form.hpp"
-#include "form/problem.hpp"
+#include "lone_pair.hpp"
 #include "two_blocks.hpp"
 
 #include <Eigen/Geometry>
@@ -28,14 +27,8 @@ struct Scene {
 };
 
 /// Two blocks with nothing but a frictional pair between them, and displacements by formula.
-struct Fixture {
+struct Fixture : LonePair {
   Scene scene;
-  Mesh mesh;
-  std::vector<NodeField> fields;
-  std::unique_ptr<DofLayout> layout;
-  std::unique_ptr<Problem> problem;
-  ContactForm* form = nullptr;
-  VecHandle u;
   bool slid = false; // any point, in the accepted state
 
   static Mesh turned_mesh(const Scene& scene) {
@@ -47,10 +40,7 @@ struct Fixture {
     return distribute_mesh(PETSC_COMM_WORLD, raw, {{"upper_bottom", "lower_top"}}, 0);
   }
 
-  explicit Fixture(const Scene& s) : scene(s), mesh(turned_mesh(s)) {
-    const bool unknown = std::holds_alternative<Semismooth>(scene.enforcement);
-    if (unknown) fields.assign(1 + scene.dim, multiplier_nodes(mesh, "interface", "upper_bottom"));
-    layout = std::make_unique<DofLayout>(mesh, std::vector<TiedGroup>{}, fields);
+  static ContactPair declare_pair(const Scene& scene) {
     ContactPair pair{.name = "interface",
                      .slave = "upper_bottom",
                      .master = std::string("lower_top"),
@@ -61,13 +51,11 @@ struct Fixture {
                      .stiffness = {100.0, 300.0}};
     pair.alpha = 3.0;
     pair.search_distance = 0.5;
-    pair.friction = Friction{.law = scene.law, .factor = scene.factor, .field = unknown ? 1 : -1};
-    auto contact = std::make_unique<ContactForm>(*layout, std::move(pair));
-    form = contact.get();
-    std::vector<std::unique_ptr<Form>> forms;
-    forms.push_back(std::move(contact));
-    problem = std::make_unique<Problem>(*layout, std::move(forms), std::vector<PrescribedDisplacement>{});
-    u = layout->new_vector();
+    pair.friction = Friction{.law = scene.law, .factor = scene.factor};
+    return pair;
+  }
+
+  explicit Fixture(const Scene& s) : LonePair(turned_mesh(s), declare_pair(s)), scene(s) {
     if (!std::holds_alternative<Uzawa>(scene.enforcement)) return;
     std::vector<double> normal;
     std::vector<std::vector<double>> shear(scene.dim);
@@ -86,10 +74,8 @@ struct Fixture {
     VecArray values(vec);
     const int d = mesh.dim;
     for (std::int32_t node = 0; node < mesh.num_owned; ++node) {
-      Eigen::Vector3d x = Eigen::Vector3d::Zero(), v = Eigen::Vector3d::Zero();
-      for (int c = 0; c < d; ++c)
-        x[c] = mesh.position(node)[c];
-      x = (scene.turn.transpose() * x).eval();
+      const Eigen::Vector3d x = scene.turn.transpose() * reference(node);
+      Eigen::Vector3d v = Eigen::Vector3d::Zero();
       for (int c = 0; c < d; ++c)
         v[c] = wiggle * std::sin(1.0 + 3.0 * x[0] + 2.0 * x[d - 1] + 5.0 * c);
       if (x[d - 1] > 1.0 + 0.5 * gap0) {

@@ -1,8 +1,7 @@
 // A surface that meets itself: who is a partner on strips bent onto themselves, each contact counted once, tangent,
 // balance, the same on any number of ranks.
-#include "contact/contact_form.hpp"
 #include "fold.hpp"
-#include "form/problem.hpp"
+#include "lone_pair.hpp"
 #include "strip.hpp"
 #include "two_blocks.hpp"
 
@@ -39,34 +38,31 @@ struct Self {
 
 constexpr double stiffness = 100.0, alpha = 3.0;
 
-struct Fixture {
+struct Fixture : LonePair {
   Self self;
-  Mesh mesh;
-  std::unique_ptr<DofLayout> layout;
-  std::unique_ptr<Problem> problem;
-  ContactForm* form = nullptr;
-  VecHandle u;
 
-  explicit Fixture(const Self& s) : self(s), mesh(distribute_mesh(s.comm, strip(s.comm, s.strip), {}, 0)) {
+  static Mesh mesh_with_skin(const Self& self) {
+    auto mesh = distribute_mesh(self.comm, strip(self.comm, self.strip), {}, 0);
     name_exterior(mesh);
-    layout = std::make_unique<DofLayout>(mesh, std::vector<TiedGroup>{}, std::vector<NodeField>{});
+    return mesh;
+  }
+
+  static ContactPair declare_pair(const Self& self) {
     ContactPair pair{.name = "skin",
                      .slave = exterior_name,
                      .master = std::string(exterior_name),
                      .enforcement = self.enforcement,
                      .projection = self.projection,
                      .kinematics = Kinematics::Finite,
-                     .space = mesh.dim == 3 ? Space::Solid : Space::PlaneStrain,
+                     .space = self.strip.dim == 3 ? Space::Solid : Space::PlaneStrain,
                      .stiffness = {stiffness}};
     pair.alpha = alpha;
     pair.search_distance = 0.35;
     if (self.law) pair.friction = Friction{.law = *self.law, .factor = std::nullopt};
-    auto contact = std::make_unique<ContactForm>(*layout, std::move(pair));
-    form = contact.get();
-    std::vector<std::unique_ptr<Form>> forms;
-    forms.push_back(std::move(contact));
-    problem = std::make_unique<Problem>(*layout, std::move(forms), std::vector<PrescribedDisplacement>{});
-    u = layout->new_vector();
+    return pair;
+  }
+
+  explicit Fixture(const Self& s) : LonePair(mesh_with_skin(s), declare_pair(s)), self(s) {
     if (!std::holds_alternative<Uzawa>(self.enforcement)) return;
     std::vector<double> pressure;
     for (const auto node : form->nodes().nodes)
@@ -74,17 +70,6 @@ struct Fixture {
     form->hold_multipliers(pressure);
   }
 
-  Vector3d reference(std::int32_t node) const {
-    Vector3d X = Vector3d::Zero();
-    for (int c = 0; c < mesh.dim; ++c)
-      X[c] = mesh.position(node)[c];
-    return X;
-  }
-  /// In [-1, 1], from the place alone.
-  static double noise(const Vector3d& X, int component, int seed) {
-    const double s = std::sin(12.9898 * X[0] + 78.233 * X[1] + 37.719 * X[2] + 4.1 * component + 1.7 * seed);
-    return 2.0 * (s * 43758.5453 - std::floor(s * 43758.5453)) - 1.0;
-  }
   /// Folds the strip in the plane of its length and thickness, with some roughness.
   void fold(Vec vec, const Fold& fold, double roughness = 0.0, int seed = 1) const {
     VecArray values(vec);
@@ -342,7 +327,7 @@ TEST_CASE("self contact: tangent of the whole residual, legs pressed and slid ov
               VecArray values(direction);
               for (std::int32_t node = 0; node < fixture.mesh.num_owned; ++node)
                 for (int c = 0; c < dim; ++c)
-                  values[node * dim + c] = Fixture::noise(fixture.reference(node), c, 17);
+                  values[node * dim + c] = noise(fixture.reference(node), c, 17);
             }
             double range = 1e-3;
             while (range > 1e-5 && !is_smooth(fixture, direction, range))
