@@ -41,8 +41,9 @@ ChangingBlock::ChangingBlock(std::span<const double> reference, int size)
     : reference_(reference), size_(size), place_(size, -1) {}
 
 bool ChangingBlock::covers(std::span<const Change> changes) const {
-  return std::all_of(changes.begin(), changes.end(),
-                     [this](const Change& change) { return place_[change.row] >= 0 && place_[change.column] >= 0; });
+  return is_ready_ && std::all_of(changes.begin(), changes.end(), [this](const Change& change) {
+           return place_[change.row] >= 0 && place_[change.column] >= 0;
+         });
 }
 
 MatHandle ChangingBlock::part(const std::vector<int>& rows, const std::vector<int>& columns) const {
