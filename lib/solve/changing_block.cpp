@@ -13,14 +13,16 @@ VecHandle new_vector(std::size_t size) {
   return vector;
 }
 
-/// Factorizes a dense matrix in place, with partial pivoting; false if it is singular.
+/// Factorizes a dense matrix in place, with partial pivoting; false if it is singular, which PETSc takes for an error.
 bool factorize_in_place(Mat matrix) {
   MatFactorInfo info;
-  MatFactorError error = MAT_FACTOR_NOERROR;
   AMT_PETSC(MatFactorInfoInitialize(&info));
-  AMT_PETSC(MatLUFactor(matrix, nullptr, nullptr, &info));
-  AMT_PETSC(MatFactorGetError(matrix, &error));
-  return error == MAT_FACTOR_NOERROR;
+  AMT_PETSC(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+  const PetscErrorCode code = MatLUFactor(matrix, nullptr, nullptr, &info);
+  AMT_PETSC(PetscPopErrorHandler());
+  if (code == PETSC_ERR_MAT_LU_ZRPVT) return false;
+  AMT_PETSC(code);
+  return true;
 }
 
 void gather(std::span<const double> all, const std::vector<int>& places, Vec part) {

@@ -17,8 +17,8 @@ namespace {
 constexpr double exactness = 1e-10;
 /// Rows of the pattern by which equations that change are widened, so that a zone of contact can grow a little.
 constexpr int margin = 2;
-/// Dense matrices on so many equations have a third of a gigabyte.
-constexpr std::size_t most_equations = 6'000;
+/// Two or three dense matrices of so many equations, 72 MB each, are kept.
+constexpr std::size_t most_equations = 3'000;
 
 /// Calls visit(columns, values) with a row of the matrix.
 template <class Visit>

@@ -5,8 +5,9 @@ MU = 0.3
 SMALL = {"steps.0.increments": 1, "steps.1.increments": 4}
 MULTIGRID = {"ksp_type": "gmres", "ksp_pc_side": "right", "pc_type": "gamg", "snes_ksp_ew": True}
 SOLVERS = {
-    "a factorization for every tangent": {},
+    "a factorization for every tangent": {"petsc": {"pc_type": "lu", "ksp_type": "preonly"}},
     "kept factorizations": {"petsc": {"pc_type": "shell", "ksp_type": "preonly"}},
+    "condensed onto contact": {"petsc": {"pc_type": "shell", "ksp_type": "preonly", "shell_solver": "schur"}},
 }
 
 

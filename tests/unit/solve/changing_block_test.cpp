@@ -32,7 +32,8 @@ double defect(const std::vector<double>& matrix, const std::vector<ChangingBlock
   for (const auto& change : changes)
     rest[change.row] -= change.value * solution[change.column];
   const auto largest = [](const std::vector<double>& v) {
-    return std::abs(*std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    return std::abs(
+        *std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
   };
   return largest(rest) / largest(right);
 }
