@@ -392,8 +392,7 @@ double Problem::probe_diagonal(const State& state) {
   return sum;
 }
 
-/// Owned equations that forms without a constant tangent add to, on whichever rank. Collective.
-std::vector<PetscInt> Problem::changing_rows() const {
+std::vector<PetscInt> Problem::changing_equations() const {
   class Marker : public Coupling {
    public:
     explicit Marker(Vec flags) : flags_(flags) {}
@@ -463,9 +462,10 @@ void Problem::assemble_constant(const State& state, Mat matrix) {
   AMT_PETSC(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   AMT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATIONS, PETSC_FALSE));
-  constant_rows_.store(matrix, changing_rows());
+  constant_rows_.store(matrix, changing_equations());
   if (is_linear()) AMT_PETSC(MatGetDiagonal(matrix, diagonal_));
   constant_ready_ = true;
+  ++pattern_number_;
 }
 
 bool Problem::tangent(Vec unknowns, Mat matrix) {

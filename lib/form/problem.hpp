@@ -99,6 +99,12 @@ class Problem {
   /// pattern grows when a form asks for it. Collective.
   bool tangent(Vec unknowns, Mat matrix);
 
+  /// Owned equations, ascending, that forms without a constant tangent add to, on whichever rank: tangents of the same
+  /// pattern_number() differ in the rows and columns of these only. Collective.
+  std::vector<PetscInt> changing_equations() const;
+  /// Counts the patterns that tangents have had; 0 before the first tangent. Same on every rank.
+  int pattern_number() const { return pattern_number_; }
+
   /// Is this equation (owned by this rank) prescribed?
   bool is_prescribed(PetscInt equation) const { return prescribed_flags_[equation - layout_.first_equation()] != 0; }
   const std::vector<PrescribedDisplacement>& prescribed() const { return prescribed_; }
@@ -120,7 +126,6 @@ class Problem {
   void build_pattern(Mat matrix);
   double probe_diagonal(const State& state);
   void assemble_constant(const State& state, Mat matrix);
-  std::vector<PetscInt> changing_rows() const;
   bool any_rank(bool mine) const;
   bool is_linear() const;
   bool is_dropped(PetscInt equation) const;
@@ -145,6 +150,7 @@ class Problem {
   std::string failure_;
   bool first_guess_ = false, wants_prediction_ = false;
   bool constant_ready_ = false, tangent_ready_ = false;
+  int pattern_number_ = 0; // of the constant tangent in use
 };
 
 } // namespace amontons

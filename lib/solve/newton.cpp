@@ -2,7 +2,7 @@
 
 #include "base/timer.hpp"
 #include "solve/factor_memory.hpp"
-#include "solve/kept_factorization.hpp"
+#include "solve/tangent_solver.hpp"
 
 #include <algorithm>
 #include <array>
@@ -254,7 +254,7 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   sufficient_decrease_ = decrease_asked_for(snes_);
   chosen_search_ = chosen_line_search(snes_);
   if (PreconditionerLag::applies_to(snes_)) lag_.emplace();
-  if (KeptFactorization::is_asked_for(snes_)) kept_factorization_ = std::make_unique<KeptFactorization>(problem, snes_);
+  tangent_solver_ = new_tangent_solver(problem, snes_);
   if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
 }
 
@@ -300,7 +300,7 @@ PetscErrorCode Newton::evaluate_tangent(SNES, Vec unknowns, Mat matrix, Mat, voi
     const bool is_guess = newton.problem_.is_first_guess();
     ask_for_decrease(newton.snes_, is_guess ? accept_anything : newton.sufficient_decrease_);
     if (!newton.problem_.tangent(unknowns, matrix)) return;
-    if (newton.kept_factorization_) newton.kept_factorization_->tangent_changed();
+    if (newton.tangent_solver_) newton.tangent_solver_->tangent_changed();
     if (newton.lag_) newton.lag_->decide(newton.snes_, newton.last_norm_);
     if (!newton.lag_ || newton.lag_->rebuilds()) ++newton.factorizations_;
   });
@@ -379,7 +379,7 @@ void Newton::forget_failed_factorization() {
 void Newton::predict(Vec unknowns) {
   VecHandle load = problem_.layout().new_vector(), step = problem_.layout().new_vector();
   if (problem_.begin_prediction(unknowns, matrix_, load)) {
-    if (kept_factorization_) kept_factorization_->tangent_changed();
+    if (tangent_solver_) tangent_solver_->tangent_changed();
     ++factorizations_;
     if (!solve_linear(load, step)) AMT_PETSC(VecSet(step, 0.0)); // the solve from there will tell what is wrong
     forget_failed_factorization();
@@ -390,10 +390,10 @@ void Newton::predict(Vec unknowns) {
 bool Newton::solve_linearized(Vec unknowns, Vec load, Vec result) {
   const Phase phase("linear solver");
   const bool is_new = problem_.tangent(unknowns, matrix_);
-  if (kept_factorization_) {
-    kept_factorization_->begin();
-    if (is_new) kept_factorization_->tangent_changed();
-    kept_factorization_->want_accuracy();
+  if (tangent_solver_) {
+    tangent_solver_->begin();
+    if (is_new) tangent_solver_->tangent_changed();
+    tangent_solver_->want_accuracy();
   }
   // Where a tolerance is one of forces, it is that of the scene: a load of their size is solved for as well as they
   // are.
@@ -406,7 +406,7 @@ bool Newton::solve_linearized(Vec unknowns, Vec load, Vec result) {
   const bool is_solved = solve_linear(load, result);
   AMT_PETSC(VecScale(load, 1.0 / scale));
   AMT_PETSC(VecScale(result, 1.0 / scale));
-  if (kept_factorization_) kept_factorization_->rethrow();
+  if (tangent_solver_) tangent_solver_->rethrow();
   return is_solved;
 }
 
@@ -414,19 +414,19 @@ SolveOutcome Newton::solve(Vec unknowns) {
   factorizations_ = 0;
   course_.clear();
   kept_ = nullptr;
-  if (kept_factorization_) kept_factorization_->begin();
+  if (tangent_solver_) tangent_solver_->begin();
   const Phase phase("linear solver"); // the phases of forms inside stop this clock
   forget_failed_factorization();
   if (problem_.wants_prediction()) predict(unknowns);
   const PetscErrorCode code = SNESSolve(snes_, nullptr, unknowns);
   if (kept_) std::rethrow_exception(kept_);
-  if (kept_factorization_) kept_factorization_->rethrow();
+  if (tangent_solver_) tangent_solver_->rethrow();
   AMT_PETSC(code);
   SolveOutcome outcome = outcome_of(snes_, problem_);
   outcome.factorizations = factorizations_;
-  if (kept_factorization_) {
-    outcome.factorizations = kept_factorization_->factorizations();
-    outcome.linear = kept_factorization_->iterations();
+  if (tangent_solver_) {
+    outcome.factorizations = tangent_solver_->factorizations();
+    outcome.linear = tangent_solver_->iterations();
   }
   return outcome;
 }

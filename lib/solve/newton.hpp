@@ -16,7 +16,7 @@
 
 namespace amontons {
 
-class KeptFactorization;
+class TangentSolver;
 
 /// Sets a PETSc option unless the user has set it already.
 void default_option(const std::string& name, const std::string& value);
@@ -110,8 +110,7 @@ class Newton : public IncrementNewton {
   Problem& problem_;
   std::function<bool()> interrupted_;
   SnesHandle snes_;
-  std::unique_ptr<KeptFactorization>
-      kept_factorization_; // absent unless the problem is large or the options ask for it
+  std::unique_ptr<TangentSolver> tangent_solver_; // absent where PETSc's own preconditioners do
   MatHandle matrix_;
   VecHandle residual_;
   SolveCourse course_; // of the running solve

@@ -1,8 +1,11 @@
 #include "solve/solver_choice.hpp"
 
+#include "base/log.hpp"
 #include "solve/newton.hpp"
+#include "solve/schur_factorization.hpp"
 
 #include <array>
+#include <cmath>
 
 namespace amontons {
 
@@ -14,6 +17,21 @@ constexpr PetscInt kept_from_3d = 20'000;
 /// Unknowns above which memory counts more than the time of multigrid's set-up: coarse matrices made "all at once" save
 /// 1.3 kB an unknown and take ten times as long, a quarter of a run of four increments.
 constexpr PetscInt lean_products_from = 3'000'000;
+
+/// Operations of a symmetric factorization by MUMPS with SCOTCH over the power of the unknowns with which they grow:
+/// 71 to 81 in 2D (17,000 to 69,000 unknowns), 12 to 16 in 3D (3,000 to 25,000).
+constexpr double operations_2d = 75.0, operations_3d = 15.0;
+
+/// Does a dense factorization of the equations that change cost less than a sparse one of all? The first of them is
+/// dense in all of these, later ones in those that have really changed (SchurFactorization).
+bool condensing_pays(const Problem& problem) {
+  const auto& layout = problem.layout();
+  const auto size = static_cast<double>(layout.num_global());
+  const double sparse = (problem.tangent_is_symmetric() ? 1.0 : 2.0) *
+                        (layout.dim() == 2 ? operations_2d * std::pow(size, 1.5) : operations_3d * std::pow(size, 2.0));
+  const double dense = 2.0 / 3.0 * std::pow(static_cast<double>(problem.changing_equations().size()), 3.0);
+  return dense <= sparse;
+}
 
 std::string option(const char* name) {
   std::array<char, 64> value{};
@@ -37,6 +55,11 @@ std::string choose_newton_solver(const Problem& problem) {
     if (problem.tangent_is_symmetric()) smooth_by_factors();
     default_option("-ksp_max_it", "2000");
     words = "smoothed-aggregation multigrid with conjugate gradients or GMRES";
+  } else if (is_free && is_direct && can_condense(problem) && condensing_pays(problem)) {
+    AMT_PETSC(PetscOptionsSetValue(nullptr, "-pc_type", PCSHELL));
+    default_option("-shell_solver", "schur");
+    words = formatted("MUMPS once, condensed onto %d equations of contact",
+                      static_cast<int>(problem.changing_equations().size()));
   } else if (is_free && is_direct && size > (is_2d ? kept_from_2d : kept_from_3d)) {
     AMT_PETSC(PetscOptionsSetValue(nullptr, "-pc_type", PCSHELL));
     words = "MUMPS, symmetric factorizations kept over several tangents, with FGMRES";
