@@ -10,7 +10,9 @@ DefineConstant[
   outside = {80, Name "half width (radius) of the holder"},
   thick = {15, Name "thickness of the holder"},
   n = {8, Name "cells from the middle block to the rim"},
-  m = {4, Name "cells from a plane of symmetry to the diagonal"}
+  m = {4, Name "cells from a plane of symmetry to the diagonal"},
+  grow = {1, Name "ratio of the sizes of two cells, outwards from the middle block"},
+  towards = {1, Name "ratio of the sizes of two cells of the sheet, towards the diagonal"}
 ];
 Macro Outline // points p0..p2 from the x axis over the diagonal to the y axis at `width`; curves c0, c1 between them
   d = bent ? width / Sqrt(2) : width;
@@ -29,7 +31,8 @@ Macro Outline // points p0..p2 from the x axis over the diagonal to the y axis a
   Else
     Line(c1) = {p1, p2};
   EndIf
-  Transfinite Curve {c0, c1} = cells + 1;
+  Transfinite Curve {c0} = cells + 1 Using Progression ratio;
+  Transfinite Curve {c1} = cells + 1 Using Progression 1 / ratio;
 Return
 Macro Between // faces between the last outline and a new one at `width`: s0 at the x axis, s1 at the y axis
   a0 = p0; a1 = p1; a2 = p2; b0 = c0; b1 = c1;
@@ -37,7 +40,7 @@ Macro Between // faces between the last outline and a new one at `width`: s0 at 
   r0 = newl; Line(r0) = {a0, p0};
   r1 = newl; Line(r1) = {a1, p1};
   r2 = newl; Line(r2) = {a2, p2};
-  Transfinite Curve {r0, r1, r2} = along + 1;
+  Transfinite Curve {r0, r1, r2} = along + 1 Using Progression outwards;
   l0 = newll; Curve Loop(l0) = {r0, c0, -r1, -b0};
   s0 = news; Plane Surface(s0) = {l0};
   l1 = newll; Curve Loop(l1) = {r1, c1, -r2, -b1};
@@ -47,11 +50,13 @@ Macro Between // faces between the last outline and a new one at `width`: s0 at 
 Return
 
 z = 0; middle = newp; Point(middle) = {0, 0, z};
-cells = m; bent = 0; width = flat;
+cells = m; ratio = towards; outwards = grow;
+bent = 0; width = flat;
 Call Outline;
 q0 = newl; Line(q0) = {middle, p0};
 q1 = newl; Line(q1) = {p2, middle};
-Transfinite Curve {q0, q1} = m + 1;
+Transfinite Curve {q0} = m + 1 Using Progression ratio;
+Transfinite Curve {q1} = m + 1 Using Progression 1 / ratio;
 l = newll; Curve Loop(l) = {q0, c0, c1, q1};
 s = news; Plane Surface(s) = {l};
 Transfinite Surface {s} = {middle, p0, p1, p2};
@@ -66,7 +71,7 @@ Physical Surface("on_x") = {made[5], made[16]}; // in the plane x = 0
 Physical Surface("on_y") = {made[2], made[8]};  // in the plane y = 0
 
 z = t; middle = newp; Point(middle) = {0, 0, z};
-cells = 3; width = inside;
+cells = 3; ratio = 1; outwards = 1; width = inside;
 Call Outline;
 width = outside; along = 2;
 Call Between;

@@ -117,7 +117,8 @@ double gap_under_pressure(const MasterHit& hit, double size) {
 /// Adds the forces that the samples claim to the bodies of both sides. That of the pressure on the master acts on the
 /// same line as on the slave, so its moment may be taken at the slave's point. Shear acts across that line: at the
 /// master's own point, as far away as the two are, where small kinematics balance forces (the couple that remains is of
-/// the order of what they neglect, and belongs to the balance of the whole scene), or at the same place on both.
+/// the order of what they neglect, and belongs to the balance of the whole scene), or in finite kinematics at the place
+/// that the pair names, the same on both.
 void add_forces(const ContactSamples& samples, const FacetSet& slave, std::span<const SlavePoint> points,
                 std::span<const MasterHit> hits, bool is_rigid, const std::array<double, 3>& pivot,
                 ClaimedForces& forces) {

@@ -518,8 +518,7 @@ ContactSamples ContactForm::samples(const State& state) {
     samples.xi.push_back(points_.xi(point));
     samples.place.push_back(point.place);
     samples.normal.push_back(point.normal);
-    if (points_.is_following() && std::holds_alternative<SlaveNormal>(pair_.projection))
-      samples.acts_at.push_back(points_.force_place(i));
+    if (points_.is_following()) samples.acts_at.push_back(points_.force_place(i));
     samples.weight.push_back(point.weight);
     samples.facet_size.push_back(point.size);
     samples.pressure.push_back(sigma(i) < 0.0 ? -sigma(i) : 0.0);

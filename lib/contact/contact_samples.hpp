@@ -21,8 +21,8 @@ struct ContactSamples {
   std::vector<std::array<double, 2>> xi;     // on that facet
   std::vector<std::array<double, 3>> place;  // reference position X of the point
   std::vector<std::array<double, 3>> normal; // n, out of the master; the traction on the slave is pressure * n
-  /// Where the traction acts, in finite kinematics along the slave's normal (then at the projection); empty: at the
-  /// points themselves. With shear over a gap it matters to moments.
+  /// Where the traction acts on both sides, in finite kinematics (point_tangent.cpp: at the slave's point or at the
+  /// projection); empty: on each side at its own point. With shear over a gap it matters to moments.
   std::vector<std::array<double, 3>> acts_at;
   std::vector<double> weight;        // area (per unit thickness in 2D, of the full turn when axisymmetric)
   std::vector<double> facet_size;    // h

@@ -155,7 +155,8 @@ void ContactPoints::follow_master(ContactPoint& point, PointNow& now) {
 std::array<double, 3> ContactPoints::force_place(std::size_t i) const {
   if (!is_following()) return points_[i].place;
   const auto& now = now_[i];
-  return array(std::holds_alternative<AlongSlaveNormal>(now.hold) ? now.projection : now.slave.place);
+  const bool at_slave = std::holds_alternative<OnFacet>(now.hold) || std::holds_alternative<OnRigidShape>(now.hold);
+  return array(at_slave ? now.slave.place : now.projection);
 }
 
 } // namespace amontons

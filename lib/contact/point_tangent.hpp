@@ -39,7 +39,8 @@ struct PointTangent {
       Eigen::Matrix<double, point_row::count, point_column::count>::Zero();
 };
 
-/// Virtual work w (σ δg + σ_t · δg_t) with δg = n · (δx − δρ), δg_t = δx − δρ − g δn (derivation in the source file).
+/// Virtual work w (σ δg + σ_t · δg_t) with δg = n · (δx − δρ), δg_t = δx − δρ − g ω × n (derivation in the source
+/// file).
 PointForces point_forces(const PointTractions& tractions, const TurningSurface& turning);
 PointTangent point_tangent(const PointTractions& tractions, const PointKinematics& kinematics);
 

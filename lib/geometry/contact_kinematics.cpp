@@ -54,6 +54,13 @@ struct Kinematics {
   const Vector3d& normal;
   double gap;
 
+  void turn_with_slave(PointKinematics& point) const {
+    point.turning.slot = at::s;
+    point.turning.dual = dual_of(slave.tangents);
+    for (int a = 0; a < 2; ++a)
+      point.turning.tangents[a].middleCols<3>(at::s + 3 * a).setIdentity();
+  }
+
   PointKinematics operator()(const OnFacet&) const {
     const auto& m = master.tangents;
     PointKinematics point;
@@ -90,6 +97,7 @@ struct Kinematics {
     PointKinematics point;
     set_gap_on_master(point, normal);
     point.xi = tau * (side / (t.squaredNorm() - gap * normal.dot(bend)));
+    turn_with_slave(point);
     VectorVariation moved = -master.tangents * point.xi;
     moved.middleCols<3>(at::x) += Matrix3d::Identity();
     moved.middleCols<3>(at::rho) -= Matrix3d::Identity();
@@ -100,6 +108,7 @@ struct Kinematics {
   PointKinematics operator()(const OnCorner&) const {
     PointKinematics point;
     set_gap_on_master(point, normal);
+    turn_with_slave(point);
     point.normal.middleCols<3>(at::x) = across(normal) / gap;
     point.normal.middleCols<3>(at::rho) = -across(normal) / gap;
     return point;
@@ -107,10 +116,7 @@ struct Kinematics {
 
   PointKinematics operator()(const AlongSlaveNormal&) const {
     PointKinematics point;
-    point.turning.slot = at::s;
-    point.turning.dual = dual_of(slave.tangents);
-    for (int a = 0; a < 2; ++a)
-      point.turning.tangents[a].middleCols<3>(at::s + 3 * a).setIdentity();
+    turn_with_slave(point);
     point.normal = normal_variation(point.turning, normal);
     VectorVariation side = -gap * point.normal;
     side.middleCols<3>(at::x) += Matrix3d::Identity();

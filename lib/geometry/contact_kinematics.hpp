@@ -48,8 +48,8 @@ struct OnRigidShape {
 };
 using ProjectionHold = std::variant<OnFacet, OnEdge, OnCorner, AlongSlaveNormal, OnRigidShape>;
 
-/// The surface whose turning turns the normal at fixed ξ, δn = −Σ t^α (n · δt_α): its dual tangents t^α, where its
-/// tangents stand among the vectors, and their whole variation (with that of ξ).
+/// The surface with which the gap vector turns at fixed ξ, by δn = −Σ t^α (n · δt_α) where n is its normal: its dual
+/// tangents t^α, where its tangents stand among the vectors, and their whole variation (with that of ξ).
 struct TurningSurface {
   int slot = -1; // contact_slot::m or s; negative: none
   TangentPair dual = TangentPair::Zero();

@@ -76,45 +76,134 @@ TEST_CASE("finite kinematics: tangent with the slave's normal, around an axis, a
   }
 }
 
+namespace {
+
+/// Pressed by held multipliers over a gap above ridges, so that points hang over edges and corners.
+std::unique_ptr<Fixture> hung_over_ridges(int dim, int seed) {
+  auto fixture = std::make_unique<Fixture>(Scene{.dim = dim, .enforcement = Uzawa{}, .law = Coulomb{.mu = 0.3}});
+  const auto ridges = [=](const Vector3d& X, bool upper) {
+    Vector3d x = X;
+    if (!upper && X[dim - 1] > 0.9)
+      x[dim - 1] -=
+          0.9 * (std::pow(X[0] - 0.5, 2) + (dim == 3 ? std::pow(X[1] - 0.5, 2) : 0.0)) + 0.01 * noise(X, 1, seed);
+    if (upper) x += Vector3d(0.02 * seed, 0.0, 0.0) + 0.05 * Vector3d::Unit(dim - 1);
+    return x;
+  };
+  fixture->set(fixture->u, ridges);
+  fixture->hold_multipliers(Matrix3d::Identity());
+  auto multipliers = fixture->form->multipliers();
+  for (double& value : multipliers)
+    value -= 400.0;
+  fixture->form->hold_multipliers(multipliers);
+  fixture->accept(0.5);
+  fixture->set(fixture->u, [=](const Vector3d& X, bool upper) {
+    return Vector3d(ridges(X, upper) + (upper ? 0.01 : 0.0) * Vector3d(1.0, dim == 3 ? 0.5 : 0.0, 0.0));
+  });
+  fixture->problem->begin_increment(1.0, fixture->u);
+  return fixture;
+}
+
+/// Points in contact at edges and at corners, of all ranks.
+std::array<int, 2> points_at_edges(Fixture& fixture) {
+  std::array<int, 2> count{};
+  const auto samples = fixture.form->samples(fixture.problem->state_at(fixture.u));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.status[i] == ContactStatus::Open) continue;
+    count[0] += std::holds_alternative<OnEdge>(fixture.form->points().now(i).hold);
+    count[1] += std::holds_alternative<OnCorner>(fixture.form->points().now(i).hold);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, count.data(), 2, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+  return count;
+}
+
+/// Force and moment, and the sum of the sizes of the forces; of all ranks.
+using Wrench = Eigen::Matrix<double, 7, 1>;
+
+void add_force(Wrench& wrench, const Vector3d& place, const Vector3d& force) {
+  wrench.head<3>() += force;
+  wrench.segment<3>(3) += place.cross(force);
+  wrench[6] += force.norm();
+}
+
+/// Of the nodal forces of contact on one of the blocks.
+Wrench nodal_wrench(const Fixture& fixture, bool upper) {
+  const auto residual = fixture.layout->new_vector();
+  fixture.problem->residual(fixture.u, residual);
+  Wrench wrench = Wrench::Zero();
+  const int dim = fixture.mesh.dim;
+  {
+    VecReader forces(residual), u(fixture.u);
+    for (std::int32_t node = 0; node < fixture.mesh.num_owned; ++node) {
+      Vector3d x = fixture.reference(node), force = Vector3d::Zero();
+      if (fixture.is_upper(x) != upper) continue;
+      for (int c = 0; c < dim; ++c) {
+        x[c] += u[node * dim + c];
+        force[c] = -forces[node * dim + c];
+      }
+      add_force(wrench, x, force);
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, wrench.data(), 7, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  return wrench;
+}
+
+/// Of the tractions on the slave that the pair claims, where it says that they act.
+Wrench claimed_wrench(const Fixture& fixture) {
+  const auto samples = fixture.form->samples(fixture.problem->state_at(fixture.u));
+  Wrench wrench = Wrench::Zero();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto traction = samples.traction(i), place = samples.acts_at.at(i);
+    add_force(wrench, Vector3d(place.data()), samples.weight[i] * Vector3d(traction.data()));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, wrench.data(), 7, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  return wrench;
+}
+
+/// Both blocks feel the claimed tractions at the same places.
+void check_claims(const Fixture& fixture) {
+  const auto on_upper = nodal_wrench(fixture, true), on_lower = nodal_wrench(fixture, false),
+             claimed = claimed_wrench(fixture);
+  CHECK(claimed[6] > 0.1);
+  for (int c = 0; c < 6; ++c) {
+    CHECK(std::abs(on_upper[c] - claimed[c]) <= 1e-11 * claimed[6]);
+    CHECK(std::abs(on_lower[c] + claimed[c]) <= 1e-11 * claimed[6]);
+  }
+}
+
+} // namespace
+
 TEST_CASE("finite kinematics: points at edges and corners of the master enter the tangent") {
-  // Pressed by held multipliers over a gap above ridges, so that points hang over edges and corners.
   int edges = 0, corners = 0;
   for (const int dim : {2, 3})
     for (int seed = 1; seed <= 4; ++seed) {
       CAPTURE(dim);
       CAPTURE(seed);
-      Fixture fixture({.dim = dim, .enforcement = Uzawa{}, .law = Coulomb{.mu = 0.3}});
-      const auto ridges = [=](const Vector3d& X, bool upper) {
-        Vector3d x = X;
-        if (!upper && X[dim - 1] > 0.9)
-          x[dim - 1] -=
-              0.9 * (std::pow(X[0] - 0.5, 2) + (dim == 3 ? std::pow(X[1] - 0.5, 2) : 0.0)) + 0.01 * noise(X, 1, seed);
-        if (upper) x += Vector3d(0.02 * seed, 0.0, 0.0) + 0.05 * Vector3d::Unit(dim - 1);
-        return x;
-      };
-      fixture.set(fixture.u, ridges);
-      fixture.hold_multipliers(Matrix3d::Identity());
-      auto multipliers = fixture.form->multipliers();
-      for (double& value : multipliers)
-        value -= 400.0;
-      fixture.form->hold_multipliers(multipliers);
-      fixture.accept(0.5);
-      fixture.set(fixture.u, [=](const Vector3d& X, bool upper) {
-        return Vector3d(ridges(X, upper) + (upper ? 0.01 : 0.0) * Vector3d(1.0, dim == 3 ? 0.5 : 0.0, 0.0));
-      });
-      fixture.problem->begin_increment(1.0, fixture.u);
-      check_tangent(fixture);
-      const auto samples = fixture.form->samples(fixture.problem->state_at(fixture.u));
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (samples.status[i] == ContactStatus::Open) continue;
-        edges += std::holds_alternative<OnEdge>(fixture.form->points().now(i).hold);
-        corners += std::holds_alternative<OnCorner>(fixture.form->points().now(i).hold);
-      }
+      const auto fixture = hung_over_ridges(dim, seed);
+      check_tangent(*fixture);
+      const auto count = points_at_edges(*fixture);
+      edges += count[0];
+      corners += count[1];
     }
-  MPI_Allreduce(MPI_IN_PLACE, &edges, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
-  MPI_Allreduce(MPI_IN_PLACE, &corners, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
   CHECK(edges >= 10);
   CHECK(corners >= 10);
+}
+
+TEST_CASE("finite kinematics: both bodies feel the claimed tractions where these are said to act, moments included") {
+  for (const int dim : {2, 3}) {
+    CAPTURE(dim);
+    for (int seed = 1; seed <= 4; ++seed) { // shear over gaps at edges and corners, too
+      CAPTURE(seed);
+      check_claims(*hung_over_ridges(dim, seed));
+    }
+    for (const int order : {1, 2})
+      for (const ProjectionKind& projection : {ProjectionKind(ClosestPoint{}), ProjectionKind(SlaveNormal{})}) {
+        CAPTURE(order);
+        CAPTURE(projection.index());
+        Fixture fixture({.dim = dim, .order = order, .projection = projection, .law = Coulomb{.mu = 0.3}});
+        prepare(fixture, Motion::Slip, turn_of(dim));
+        check_claims(fixture);
+      }
+  }
 }
 
 TEST_CASE("finite kinematics: a rigid motion of everything turns forces and does nothing else; they balance") {
@@ -128,7 +217,6 @@ TEST_CASE("finite kinematics: a rigid motion of everything turns forces and does
             CAPTURE(enforcement.index());
             CAPTURE(projection.index());
             CAPTURE(int(motion));
-            // Moments of shear over a gap balance but at edges and corners, where next to no gap carries shear.
             check_rigid_motion({.dim = dim,
                                 .order = order,
                                 .enforcement = enforcement,
