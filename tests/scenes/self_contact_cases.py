@@ -143,6 +143,93 @@ def ring_pinched_friction(bench):
     check_pinched(bench, bench.run("ring_crush", pinch(16, friction=0.3)))
 
 
+OVAL = 0.25  # half-axes of the middle line 1.25 and 0.75, the plates along the longer one
+
+
+def oval_between_plates(end, wall_force=None):
+    """The inextensible oval, free of stress, with plates so close that its walls touch, half the thickness from the middle: approach of
+    each plate and its force. `wall_force`: that which the walls press on each other with; None: at the approach `end`.
+
+    A quarter, from the middle of the wall to the side, by the angle phi of the ellipse. With v = ds / dphi, tangent angle a, natural
+    curvature k_0 and moment m = change of curvature: a' = v m - k_0 v, m' = v cos(a) times the force across the section, which is half
+    of the walls' up to where the plate lies on (phi_c, where a = 0) and less by half of the plate's from there on. Nothing pulls along
+    the plates. The wall between its two lines of contact is held by nothing but that moment: it takes on the mean curvature, 0, and sags
+    where its own was least, in the middle."""
+    long, short, half = 1 + OVAL, 1 - OVAL, 0.01
+
+    def shoot(unknowns):
+        """Angle at the plate's line of contact, at the side less -pi / 2, and heights of both above the side."""
+        moment, contact, plate, wall = unknowns
+        state, heights = np.array([0.0, moment, 0.0]), []
+        for first, last, push in ((0.0, contact, 0.5 * wall), (contact, 0.5 * np.pi, 0.5 * (wall - plate))):
+            step = (last - first) / 60
+
+            def slope(phi, y):
+                v = np.hypot(long * np.cos(phi), short * np.sin(phi))
+                return np.array([v * y[1] - long * short / v**2, v * push * np.cos(y[0]), v * np.sin(y[0])])
+
+            for phi in first + step * np.arange(60):
+                one = slope(phi, state)
+                two = slope(phi + 0.5 * step, state + 0.5 * step * one)
+                three = slope(phi + 0.5 * step, state + 0.5 * step * two)
+                state = state + step / 6 * (one + 2 * two + 2 * three + slope(phi + step, state + step * three))
+            heights.append(state.copy())
+        at_plate, side = heights
+        return at_plate[0], side[0] + 0.5 * np.pi, -side[2], at_plate[2] - side[2]
+
+    def conditions(unknowns):
+        at_plate, side, wall_height, plate_height = shoot(unknowns)
+        last = unknowns[3] - wall_force if wall_force is not None else short - plate_height - end
+        return np.array([at_plate, side, wall_height - half, last])
+
+    unknowns = np.array([0.5, 1.0, 60.0, 0.0])
+    for _ in range(12):
+        values = conditions(unknowns)
+        steps = 1e-6 * np.maximum(1.0, np.abs(unknowns))
+        slopes = np.array([(conditions(unknowns + row) - values) / row.sum() for row in np.diag(steps)]).T
+        unknowns = unknowns - np.linalg.solve(slopes, values)
+    assert np.abs(conditions(unknowns)).max() < 1e-8, "the elastica has not been found"
+    return short - shoot(unknowns)[3], unknowns[2], unknowns[3]
+
+
+def oval_ring(cells, friction=None):
+    """Changes to the deck: a ring that is an oval at rest, between the plates until its walls are pressed on each other."""
+    thickness = 0.02
+    pairs = [{"name": "inside", "self": "skin", "enforce": {"penalty": {"alpha": 0.1}}}]
+    for name, sign in (("top", 1), ("bottom", -1)):
+        plane = {"point": [0, sign * (1 - OVAL + 0.5 * thickness)], "normal": [0, -sign], "displacement": {"y": f"{-sign}*t"}}
+        pairs.append({"name": name, "slave": "outside", "master": {"plane": plane}, "search_distance": 3,
+                      "enforce": {"penalty": {"alpha": 0.05}}})
+    for pair in pairs if friction else []:
+        pair["friction"] = {"coulomb": {"mu": friction}}
+    automatic = {"first": 0.03, "largest": 0.06, "target_iterations": 12}
+    return {
+        "mesh.parameters": {"n": cells, "t": thickness, "oval": OVAL},
+        "contact": pairs,
+        "steps": [{"name": "crush", "to": 0.625, "increments": {"auto": automatic}}],
+    }
+
+
+def check_oval(bench, results):
+    time, force = results.history["time"], -results.history["contact_top_force_y"]
+    touching = results.history["contact_inside_area"] > 0
+    meeting, force_then, _ = oval_between_plates(None, 0.0)
+    bench.close("approach at which the walls meet, against the elastica", time[touching].min(), meeting, 0.01)
+    bench.close("approach at the force of the elastica then", np.interp(force_then, force, time), meeting, 0.01)
+    _, force_end, walls = oval_between_plates(time[-1])
+    bench.close("force of the plates at the end", force[-1], force_end, 0.08)
+    bench.close("force between the walls at the end", wall_force(results), walls, 0.25)
+
+
+def ring_oval(bench):
+    check_oval(bench, bench.run("ring_crush", oval_ring(24), ranks=1))
+
+
+def ring_oval_friction(bench):
+    """The lines of contact travel along the plates, but the wall rolls on them and hardly slides."""
+    check_oval(bench, bench.run("ring_crush", oval_ring(24, 0.3), ranks=1))
+
+
 # --- a tube crushed along its axis ------------------------------------------------------------------------------------
 
 
@@ -247,6 +334,8 @@ CASES = {
         "pressure": ring_pressure,
         "pinch": ring_pinched,
         "pinch_friction": ring_pinched_friction,
+        "oval": ring_oval,
+        "oval_friction": ring_oval_friction,
     },
     "tube_buckling_2d": {"first_fold": tube_first_fold},
     "tube_buckling_3d": {"peak": tube_quarter_peak},
