@@ -204,14 +204,14 @@ def oval_ring(cells, friction=None):
     for name, sign in (("top", 1), ("bottom", -1)):
         plane = {"point": [0, sign * (1 - OVAL + 0.5 * thickness)], "normal": [0, -sign], "displacement": {"y": f"{-sign}*t"}}
         pairs.append({"name": name, "slave": "outside", "master": {"plane": plane}, "search_distance": 3,
-                      "enforce": {"penalty": {"alpha": 0.05}}})
+                      "enforce": {"penalty": {"alpha": 0.07}}})
     for pair in pairs if friction else []:
         pair["friction"] = {"coulomb": {"mu": friction}}
     automatic = {"first": 0.03, "largest": 0.06, "target_iterations": 12}
     return {
         "mesh.parameters": {"n": cells, "t": thickness, "oval": OVAL},
         "contact": pairs,
-        "steps": [{"name": "crush", "to": 0.625, "increments": {"auto": automatic}}],
+        "steps": [{"name": "crush", "to": 0.62, "increments": {"auto": automatic}}],
     }
 
 
