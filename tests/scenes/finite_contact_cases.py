@@ -78,7 +78,37 @@ def cantilever(bench):
     bench.below("this error with twice the increments", errors[1] / errors[0], 0.7)
 
 
+# --- a block slides around a faceted cylinder ---------------------------------------------------------------------------
+
+
+def forces_around(results):
+    """Force of the grip towards the axis and along the cylinder's face, from where it begins to slide on."""
+    time = results.history["time"]
+    sliding = time >= 1
+    turned = np.pi / 10 * (time[sliding] - 1)
+    x, y = (results.history[f"reaction_grip_{c}"][sliding] for c in "xy")
+    return -(x * np.sin(turned) + y * np.cos(turned)), x * np.cos(turned) - y * np.sin(turned)
+
+
+def faceted_cylinder(bench):
+    """Around a round cylinder the force stays the same and none is along the face, without friction; so it is on 10 facets that are
+    smoothed, and on 20 without smoothing less so."""
+    waves, means = {}, {}
+    for name, changes in (("smoothed", {}), ("facets", {"mesh.parameters.n": 20, "contact.0.smoothing": {"facets": {}}})):
+        results = bench.run("faceted_cylinder", changes)
+        down, along = forces_around(results)
+        waves[name], means[name] = np.ptp(down) / np.mean(down), np.mean(down)
+        stored = results.history["energy_stored"][results.history["time"] >= 1]
+        if name == "smoothed":
+            bench.below("smoothed: force along the face / force down", np.abs(along).max() / means[name], 1e-3)
+            bench.below("smoothed: change of the stored energy / energy", np.ptp(stored) / np.mean(stored), 0.01)
+    bench.below("smoothed: force down, highest less lowest / mean", waves["smoothed"], 0.005)
+    bench.below("the same over that on facets, which are half as long", waves["smoothed"] / waves["facets"], 0.5)
+    bench.below("facets lie inside the cylinder: their mean force over the smoothed", means["facets"] / means["smoothed"], 0.99)
+
+
 CASES = {
+    "faceted_cylinder": {"slide": faceted_cylinder},
     "shallow_ironing": {"press": ironing_press, "drag": ironing_drag},
     "cantilever_contact": {"energy": cantilever},
 }

@@ -143,6 +143,103 @@ def ring_pinched_friction(bench):
     check_pinched(bench, bench.run("ring_crush", pinch(16, friction=0.3)))
 
 
+OVAL = 0.25  # half-axes of the middle line 1.25 and 0.75, the plates along the longer one
+
+
+def oval_between_plates(approach=None, mu=0.0, touching=False):
+    """The inextensible oval, free of stress, between plates that have come this near, each: its approach, force, height of the wall's
+    inner side above the middle, and the force that the walls press on each other with where they are `touching`. Without an approach:
+    where they begin to.
+
+    A quarter, from the middle of the wall to the side, by the angle phi of the ellipse. With v = ds / dphi, tangent angle a, natural
+    curvature k_0 and moment m = change of curvature: a' = v m - k_0 v, m' = v (V cos a + H sin a) with the forces across the section
+    and along the plates: V half of the walls' up to where the plate lies on (phi_c, where a = 0) and less by half of the plate's from
+    there on; H what friction pulls the wall taut with, mu times half of the plate's force up to there and nothing beyond. Without
+    friction the wall between its two lines of contact takes on the mean curvature, 0, and sags where its own was least, in the middle."""
+    long, short, half = 1 + OVAL, 1 - OVAL, 0.01
+
+    def shoot(unknowns):
+        """Angle at the plate's line of contact, at the side less -pi / 2, heights of wall and plate above the side."""
+        moment, contact, plate, wall = unknowns
+        state, found = np.array([0.0, moment, 0.0]), []
+        parts = ((0.0, contact, 0.5 * wall, 0.5 * mu * plate), (contact, 0.5 * np.pi, 0.5 * (wall - plate), 0.0))
+        for first, last, across, along in parts:
+            step = (last - first) / 60
+
+            def slope(phi, y):
+                v = np.hypot(long * np.cos(phi), short * np.sin(phi))
+                bend = v * (across * np.cos(y[0]) + along * np.sin(y[0]))
+                return np.array([v * y[1] - long * short / v**2, bend, v * np.sin(y[0])])
+
+            for phi in first + step * np.arange(60):
+                one = slope(phi, state)
+                two = slope(phi + 0.5 * step, state + 0.5 * step * one)
+                three = slope(phi + 0.5 * step, state + 0.5 * step * two)
+                state = state + step / 6 * (one + 2 * two + 2 * three + slope(phi + step, state + step * three))
+            found.append(state)
+        at_plate, side = found
+        return at_plate[0], side[0] + 0.5 * np.pi, -side[2] - half, at_plate[2] - side[2]
+
+    def conditions(unknowns):
+        at_plate, side, wall_height, plate_height = shoot(unknowns)
+        third = wall_height if touching or approach is None else unknowns[3]
+        return np.array([at_plate, side, third, unknowns[3] if approach is None else short - plate_height - approach])
+
+    unknowns = np.array([0.5, 1.0, 60.0, 0.0])
+    for _ in range(20):
+        values = conditions(unknowns)
+        steps = 1e-6 * np.maximum(1.0, np.abs(unknowns))
+        slopes = np.array([(conditions(unknowns + row) - values) / row.sum() for row in np.diag(steps)]).T
+        change = np.linalg.solve(slopes, values)
+        unknowns = unknowns - change * min(1.0, 0.1 / abs(change[1]), 30.0 / abs(change[2]))
+    assert np.abs(conditions(unknowns)).max() < 1e-8, "the elastica has not been found"
+    _, _, wall_height, plate_height = shoot(unknowns)
+    return short - plate_height, unknowns[2], wall_height, unknowns[3]
+
+
+def oval_ring(cells, friction=None):
+    """Changes to the deck: a ring that is an oval at rest, between the plates until its walls are pressed on each other."""
+    thickness = 0.02
+    pairs = [{"name": "inside", "self": "skin", "enforce": {"penalty": {"alpha": 0.1}}}]
+    for name, sign in (("top", 1), ("bottom", -1)):
+        plane = {"point": [0, sign * (1 - OVAL + 0.5 * thickness)], "normal": [0, -sign], "displacement": {"y": f"{-sign}*t"}}
+        pairs.append({"name": name, "slave": "outside", "master": {"plane": plane}, "search_distance": 3,
+                      "enforce": {"penalty": {"alpha": 0.07}}})
+    for pair in pairs if friction else []:
+        pair["friction"] = {"coulomb": {"mu": friction}}
+    automatic = {"first": 0.03, "largest": 0.06, "target_iterations": 12}
+    return {
+        "mesh.parameters": {"n": cells, "t": thickness, "oval": OVAL},
+        "contact": pairs,
+        "steps": [{"name": "crush", "to": 0.62, "increments": {"auto": automatic}}],
+    }
+
+
+def ring_oval(bench):
+    """Walls that meet between the plates' lines of contact and press on each other."""
+    results = bench.run("ring_crush", oval_ring(24), ranks=1)
+    time, force = results.history["time"], -results.history["contact_top_force_y"]
+    touching = results.history["contact_inside_area"] > 0
+    meeting, force_then, _, _ = oval_between_plates()
+    bench.close("approach at which the walls meet, against the elastica", time[touching].min(), meeting, 0.01)
+    bench.close("approach at the force of the elastica then", np.interp(force_then, force, time), meeting, 0.01)
+    _, force_end, _, walls = oval_between_plates(time[-1], touching=True)
+    bench.close("force of the plates at the end", force[-1], force_end, 0.08)
+    bench.close("force between the walls at the end", wall_force(results), walls, 0.25)
+
+
+def ring_oval_friction(bench):
+    """Friction pulls the wall between the plates' lines of contact taut: it sags less than half as much and does not touch."""
+    results = bench.run("ring_crush", oval_ring(24, 0.3), ranks=1)
+    time, force = results.history["time"], -results.history["contact_top_force_y"]
+    _, force_end, height, _ = oval_between_plates(time[-1], 0.3)
+    bench.close("force of the plates at the end, against the elastica", force[-1], force_end, 0.08)
+    middle = (np.abs(results.places[:, 0]) < 1e-9) & (results.places[:, 1] > 0)
+    wall = (results.places[middle, 1] + results.nodal["displacement"][middle, 1]).min()
+    bench.below("height of the wall's inner side, off by / radius", abs(wall - height), 0.005)
+    bench.below("contact of the walls", results.history["contact_inside_area"].max(), 0.0)
+
+
 # --- a tube crushed along its axis ------------------------------------------------------------------------------------
 
 
@@ -247,6 +344,8 @@ CASES = {
         "pressure": ring_pressure,
         "pinch": ring_pinched,
         "pinch_friction": ring_pinched_friction,
+        "oval": ring_oval,
+        "oval_friction": ring_oval_friction,
     },
     "tube_buckling_2d": {"first_fold": tube_first_fold},
     "tube_buckling_3d": {"peak": tube_quarter_peak},
