@@ -21,6 +21,15 @@ std::unique_ptr<UzawaLoop> make_uzawa(Scene& scene, Newton& newton) {
   return std::make_unique<UzawaLoop>(*scene.problem, newton, *scene.multipliers, tolerance, iterations);
 }
 
+/// For multipliers that another solve starts from: change of an update, relative, and how many there may be.
+constexpr double good_start = 1e-3;
+constexpr int most_updates = 30;
+/// The alpha with which ε is as stiff as the bodies: Uzawa's loop needs no more, and its solves are the harder the more
+/// it is.
+constexpr double own_stiffness = 1.0;
+
+bool is_unknown(const ContactForm* pair) { return std::holds_alternative<Semismooth>(pair->pair().enforcement); }
+
 VecHandle copy_of(Vec vec) {
   VecHandle copy;
   AMT_PETSC(VecDuplicate(vec, copy.put()));
@@ -107,6 +116,21 @@ SolveOutcome IncrementSolver::solve_from(const OtherStart& from, double target) 
   return outcome;
 }
 
+/// With the multipliers of all pairs in one loop, whether unknown or not.
+SolveOutcome IncrementSolver::loop_on_multipliers() {
+  UzawaMultipliers held(scene_.mesh, scene_.with_multipliers);
+  for (auto* pair : scene_.with_multipliers)
+    pair->scale_augmentation(std::min(1.0, own_stiffness / pair->pair().alpha));
+  UzawaLoop loop(*scene_.problem, *newton_, held, good_start, most_updates);
+  auto outcome = loop.solve(unknowns_);
+  outcome.converged = loop.is_balanced();
+  for (auto* pair : scene_.with_multipliers) {
+    pair->release_multipliers();
+    pair->scale_augmentation(1.0);
+  }
+  return outcome;
+}
+
 std::unique_ptr<Ladder> IncrementSolver::make_ladder() {
   const auto restart = [this] {
     roll_back();
@@ -121,10 +145,14 @@ std::unique_ptr<Ladder> IncrementSolver::make_ladder() {
     support->commit(state);
     return support;
   };
+  const auto& pairs = scene_.with_multipliers;
+  std::function<SolveOutcome()> loop;
+  if (std::any_of(pairs.begin(), pairs.end(), is_unknown)) loop = [this] { return loop_on_multipliers(); };
   IncrementNewton& newton = condensed_ ? static_cast<IncrementNewton&>(*condensed_) : *newton_;
   return std::make_unique<Ladder>(*scene_.problem, newton,
                                   Ladder::Hooks{.restart = restart,
                                                 .solve = [this] { return solve_plainly(); },
+                                                .loop = loop,
                                                 .make_support = make_support,
                                                 .tell = tell_});
 }

@@ -76,6 +76,7 @@ class IncrementSolver {
   void start(double target);
   SolveOutcome solve_plainly();
   std::unique_ptr<Ladder> make_ladder();
+  SolveOutcome loop_on_multipliers();
   void extrapolate(double target);
 
   Scene& scene_;

@@ -361,6 +361,7 @@ std::unique_ptr<Scene> build_scene(MPI_Comm comm, Deck checked, const FreeMeshin
     }
     auto form = std::make_unique<ContactForm>(layout, std::move(pair));
     scene->contacts.push_back(form.get());
+    if (form->has_multipliers()) scene->with_multipliers.push_back(form.get());
     if (std::holds_alternative<Uzawa>(form->pair().enforcement)) uzawa.push_back(form.get());
     forms.push_back(std::move(form));
   }

@@ -30,6 +30,7 @@ struct Scene {
   FollowerPressureForm* follower = nullptr;      // absent without pressures in finite kinematics
   ViscousForm* stabilization = nullptr;          // absent without stabilization
   std::vector<PairReport*> contacts;             // owned by the problem
+  std::vector<ContactForm*> with_multipliers;    // of them: `uzawa`, and `semismooth` with the nodal basis
   std::unique_ptr<UzawaMultipliers> multipliers; // absent without `uzawa` pairs
   std::unique_ptr<MortarTransform> bounds;       // absent without `vi` pairs
   std::unique_ptr<CondensedContact> conditions;  // absent without `semismooth` pairs with the dual basis

@@ -116,15 +116,6 @@ double ContactForm::multiplier_at(const ContactPoint& point) const {
   return lambda;
 }
 
-void ContactForm::fetch_multipliers(const State& state) {
-  if (!is_unknown()) return;
-  AMT_PETSC(VecScatterBegin(multiplier_scatter_, state.unknowns, local_multipliers_, INSERT_VALUES, SCATTER_FORWARD));
-  AMT_PETSC(VecScatterEnd(multiplier_scatter_, state.unknowns, local_multipliers_, INSERT_VALUES, SCATTER_FORWARD));
-  VecReader values(local_multipliers_);
-  for (std::size_t i = 0; i < multipliers_.size(); ++i)
-    multipliers_[i] = scale_ * values[static_cast<PetscInt>(i)];
-}
-
 /// Gap, λ, λ̂ and status of all points. Collective.
 void ContactForm::evaluate(const State& state) {
   if (points_.has_rigid_master() && state.time != rigid_time_) {
@@ -136,12 +127,11 @@ void ContactForm::evaluate(const State& state) {
   else if (points_.master())
     points_.master()->refresh(state.unknowns);
   fetch_multipliers(state);
-  const bool has_multipliers = !std::holds_alternative<Penalty>(pair_.enforcement);
   const auto& points = points_.points();
   bool touches = false;
   for (std::size_t i = 0; i < points.size(); ++i) {
     gap_[i] = gap_at(points[i], state);
-    lambda_[i] = has_multipliers ? multiplier_at(points[i]) : 0.0;
+    lambda_[i] = has_multipliers() ? multiplier_at(points[i]) : 0.0;
     augmented_[i] = augmented_traction(lambda_[i], points[i].epsilon, gap_[i]);
     active_[i] = points[i].master != ContactPoint::none && normal_traction_derivative(augmented_[i]) > 0.0;
     touches = touches || active_[i];
@@ -321,7 +311,7 @@ void ContactForm::add_residual(const State& state, Residual& residual) {
       const auto shape = points_.multiplier_shape(points[i]);
       const double factor = scale_ / points[i].epsilon * points[i].weight;
       for (int a = 0; a < vertices; ++a)
-        values[a] += factor * shape[a] * (sigma(i) - multipliers_[position_[nodes[a]]]);
+        values[a] += factor * shape[a] * multiplier_defect_at(i, position_[nodes[a]]);
     }
     residual.add(equations, values);
   }
@@ -374,7 +364,7 @@ void ContactForm::add_tangent(const State& state, Tangent& tangent) {
         if (variation[r] != 0.0)
           for (std::size_t c = 0; c < n; ++c)
             block[r * n + c] += uu * variation[r] * variation[c];
-      if (!is_unknown()) continue;
+      if (!is_sought()) continue;
       for (std::size_t a = 0; a < shape.size(); ++a) {
         for (std::size_t b = 0; b < shape.size(); ++b)
           block[(first + a) * n + first + b] += mm * shape[a] * shape[b];
@@ -425,8 +415,6 @@ void ContactForm::restore(const ContactHistory& history) {
   assembled_ = false;
 }
 
-void ContactForm::hold_multipliers(std::vector<double> multipliers) { multipliers_ = std::move(multipliers); }
-
 void ContactForm::multiplier_defect(const State& state, std::vector<double>& defect, std::vector<double>& mass) {
   evaluate(state);
   defect.assign(nodes_.nodes.size(), 0.0);
@@ -448,12 +436,11 @@ double ContactForm::stored_energy(const State& state) {
   evaluate(state);
   double energy = 0.0;
   const auto& points = points_.points();
-  const bool has_multipliers = !std::holds_alternative<Penalty>(pair_.enforcement);
   for (std::size_t i = 0; i < points.size(); ++i) {
     double square = 0.0;
     const auto nodes = points_.slave().facet(points[i].facet);
     const auto shape = points_.multiplier_shape(points[i]);
-    for (std::size_t a = 0; has_multipliers && a < shape.size(); ++a)
+    for (std::size_t a = 0; has_multipliers() && a < shape.size(); ++a)
       square += shape[a] * std::pow(multipliers_[position_[nodes[a]]], 2);
     energy += points[i].weight * contact_potential(augmented_[i], square, points[i].epsilon);
   }
@@ -483,7 +470,7 @@ double ContactForm::work_of_displacement(const State& state) {
 /// Multipliers where there are some; for penalty the lumped projection of σ onto the multiplier basis. Collective.
 std::vector<double> ContactForm::nodal_pressure() {
   std::vector<double> pressure(nodes_.nodes.size());
-  if (!std::holds_alternative<Penalty>(pair_.enforcement)) {
+  if (has_multipliers()) {
     for (std::size_t i = 0; i < pressure.size(); ++i)
       pressure[i] = -multipliers_[i];
     return pressure;

@@ -69,8 +69,14 @@ class ContactForm : public Form, public PairReport, public Switching {
   double multiplier_scale() const override { return scale_; }
   const std::vector<double>& multipliers() const override { return multipliers_; }
   void hold_multipliers(std::vector<double> multipliers) override;
-  /// This rank's parts of ∫ N_i (σ − λ_i) / ε, by which the potential falls with λ_i, and of ∫ N_i / ε at nodes(). Where
-  /// facets differ in size, so does ε: without it the loop would end at another state than semismooth. Collective.
+  /// Are multipliers nodal numbers that can be held: `uzawa` and `semismooth`?
+  bool has_multipliers() const { return !std::holds_alternative<Penalty>(pair_.enforcement); }
+  /// Makes multipliers that are unknowns of the layout unknown again: held, normal and tangential ones together, they
+  /// are what hold_multipliers() says, and their equations that the unknowns are the same.
+  void release_multipliers();
+  /// This rank's parts of ∫ N_i (σ − λ_i) / ε, by which the potential falls with λ_i, and of ∫ N_i / ε at nodes().
+  /// Where facets differ in size, so does ε: without it the loop would end at another state than semismooth.
+  /// Collective.
   void multiplier_defect(const State& state, std::vector<double>& defect, std::vector<double>& mass);
 
   /// Absent without friction.
@@ -91,8 +97,10 @@ class ContactForm : public Form, public PairReport, public Switching {
   };
   std::vector<Group> groups() const;
   bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
+  bool is_sought() const { return is_unknown() && !away_; }
   void evaluate(const State& state);
   void fetch_multipliers(const State& state);
+  double multiplier_defect_at(std::size_t i, std::int32_t node) const;
   bool both_moved(std::span<const double> displacement) const;
   void guess_contact(bool at_any_distance);
   void apply_holds();
@@ -143,6 +151,7 @@ class ContactForm : public Form, public PairReport, public Switching {
   ContactPoints points_;
   double scale_ = 1.0; // unknown multiplier x scale_ = traction: gives it the unit of a displacement (see .cpp)
   std::vector<double> multipliers_, multipliers_old_; // traction at nodes_
+  std::optional<std::vector<double>> away_;           // unknown less held multipliers; absent unless held
   double rigid_time_ = 0.0;
   std::vector<NormalHistory> normals_old_; // empty unless master_turns()
   // At the last evaluation, per point:

@@ -263,7 +263,7 @@ void ContactForm::add_point_now(std::size_t i, const Group& group, bool first_gu
         for (int c = 0; c < d && part.columns[k] >= 0; ++c)
           spread.col(part.first + a * d + c) += part.shape(k, a) * compact.col(part.columns[k] + c);
   const auto shape = points_.multiplier_shape(point);
-  for (std::size_t a = 0; is_unknown() && a < shape.size(); ++a) {
+  for (std::size_t a = 0; is_sought() && a < shape.size(); ++a) {
     spread.col(block.parts.normal_multipliers + a) += scale_ * shape[a] * compact.col(point_column::lambda_n);
     for (int c = 0; tangential_ && c < d; ++c)
       spread.col(block.parts.tangential_multipliers + a * d + c) +=
@@ -278,19 +278,20 @@ void ContactForm::add_point_now(std::size_t i, const Group& group, bool first_gu
         for (int c = 0; c < d && part.rows[k] >= 0; ++c)
           values.row(part.first + a * d + c) += part.shape(k, a) * spread.row(part.rows[k] + c);
   if (!is_unknown()) return;
-  // δμ_i: (s / ε) w N_i (σ − λ_i), likewise the components of the shear.
+  // δμ_i: (s / ε) w N_i (σ − λ_i), likewise the components of the shear; held: (s / ε) w N_i (λ_i − s μ_i).
   const auto nodes = points_.slave().facet(point.facet);
   const double factor = scale_ / point.epsilon * point.weight;
   for (std::size_t a = 0; a < shape.size(); ++a) {
     const auto node = position_[nodes[a]];
     const auto add_row = [&](std::ptrdiff_t row, int source, double difference) {
-      values.row(row) += factor * shape[a] * (spread.row(source) + difference * spread.row(spread_row::stretch));
+      values.row(row) += factor * shape[a] * difference * spread.row(spread_row::stretch);
+      if (is_sought()) values.row(row) += factor * shape[a] * spread.row(source);
       values(row, row) -= factor * scale_ * shape[a];
     };
-    add_row(block.parts.normal_multipliers + a, spread_row::sigma, sigma(i) - multipliers_[node]);
+    add_row(block.parts.normal_multipliers + a, spread_row::sigma, multiplier_defect_at(i, node));
     for (int c = 0; tangential_ && c < d; ++c)
       add_row(block.parts.tangential_multipliers + a * d + c, spread_row::shear + c,
-              tangential_->traction(i)[c] - tangential_->multipliers()[c][node]);
+              tangential_->multiplier_defect_at(i, c, node));
   }
 }
 

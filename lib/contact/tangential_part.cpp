@@ -129,9 +129,23 @@ void TangentialPart::fetch_multipliers(const State& state) {
   AMT_PETSC(VecScatterEnd(multiplier_scatter_, state.unknowns, local_multipliers_, INSERT_VALUES, SCATTER_FORWARD));
   VecReader values(local_multipliers_);
   PetscInt at = 0;
-  for (auto& component : multipliers_)
-    for (double& value : component)
-      value = scale_ * values[at++];
+  for (std::size_t c = 0; c < multipliers_.size(); ++c)
+    for (std::size_t i = 0; i < multipliers_[c].size(); ++i) {
+      const double unknown = scale_ * values[at++];
+      if (away_)
+        (*away_)[c][i] = unknown - multipliers_[c][i];
+      else
+        multipliers_[c][i] = unknown;
+    }
+}
+
+void TangentialPart::hold_multipliers(std::vector<std::vector<double>> multipliers) {
+  multipliers_ = std::move(multipliers);
+  if (is_sought()) away_.emplace(multipliers_.size(), std::vector<double>(nodes_.nodes.size(), 0.0));
+}
+
+double TangentialPart::multiplier_defect_at(std::size_t i, int component, std::int32_t node) const {
+  return away_ ? -(*away_)[component][node] : responses_[i].traction[component] - multipliers_[component][node];
 }
 
 /// The friction factor of each point, anew when time has changed. Collective.
@@ -233,7 +247,7 @@ void TangentialPart::add_residual(std::size_t begin, std::size_t end, Residual& 
     const double factor = weight * scale_ / points[i].epsilon;
     for (std::size_t a = 0; a < shape.size(); ++a)
       for (int c = 0; c < d; ++c)
-        on_unknowns[a * d + c] += factor * shape[a] * (traction[c] - multipliers_[c][position_[nodes[a]]]);
+        on_unknowns[a * d + c] += factor * shape[a] * multiplier_defect_at(i, c, position_[nodes[a]]);
   }
   if (any) residual.add(masters, on_master);
   if (is_unknown()) residual.add(unknowns, on_unknowns);
@@ -262,7 +276,7 @@ bool TangentialPart::add_tangent(std::size_t begin, std::size_t end, const Conta
     jump_variation(point, layout, motion);
     trial_tangent(i, layout, first_guess, motion, response);
     test = motion;
-    if (is_unknown())
+    if (is_sought())
       for (std::size_t a = 0; a < shape.size(); ++a)
         for (int c = 0; c < d; ++c)
           test[c * n + layout.tangential_multipliers + a * d + c] = scale_ / point.epsilon * shape[a];
@@ -315,7 +329,7 @@ void TangentialPart::trial_tangent(std::size_t i, const ContactBlock& layout, bo
       response[r * n + column] = point.epsilon * sum;
     }
   }
-  if (!is_unknown()) return;
+  if (!is_sought()) return;
   for (std::size_t a = 0; a < shape.size(); ++a)
     for (int r = 0; r < d; ++r) {
       if (pressed_[i])

@@ -11,6 +11,7 @@
 #include "friction/return_mapping.hpp"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -74,7 +75,10 @@ class TangentialPart {
 
   /// Cartesian components of λ_t at the pair's multiplier nodes: traction.
   const std::vector<std::vector<double>>& multipliers() const { return multipliers_; }
-  void hold_multipliers(std::vector<std::vector<double>> multipliers) { multipliers_ = std::move(multipliers); }
+  void hold_multipliers(std::vector<std::vector<double>> multipliers);
+  void release_multipliers() { away_.reset(); }
+  /// What the equation of a nodal multiplier's component makes zero at a point.
+  double multiplier_defect_at(std::size_t i, int component, std::int32_t node) const;
   /// This rank's parts of ∫ N_i (σ_t − λ_t,i) / ε at the nodes, component by component.
   std::vector<std::vector<double>> multiplier_defect() const;
 
@@ -86,6 +90,7 @@ class TangentialPart {
 
  private:
   bool is_unknown() const { return std::holds_alternative<Semismooth>(pair_.enforcement); }
+  bool is_sought() const { return is_unknown() && !away_; }
   bool has_multipliers() const { return !std::holds_alternative<Penalty>(pair_.enforcement); }
   void fetch_multipliers(const State& state);
   void find_factors(double time);
@@ -103,6 +108,7 @@ class TangentialPart {
   double scale_;
   std::unique_ptr<SlipPath> path_;
   std::vector<std::vector<double>> multipliers_, multipliers_old_; // [component][node]
+  std::optional<std::vector<std::vector<double>>> away_;           // see ContactForm
   std::vector<PointHistory> history_;
   double accepted_time_ = 0.0, factor_time_ = -1.0;
   std::vector<double> factor_;

@@ -118,6 +118,28 @@ void check_file(const MeshSource& source) {
     throw UserError(file + " takes no parameters, only a .geo does; remove mesh: parameters.");
 }
 
+/// Where a file of version 2 does not say how many nodes or elements follow, gmsh 4.8 takes the number that happens to
+/// be in memory: it may crash in one process and not in its child. So that is looked at here, by the function that gmsh
+/// asks.
+void check_counts(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string line, count;
+  for (std::int64_t number = 1; std::getline(stream, line); ++number) {
+    const bool is_format = line.starts_with("$MeshFormat");
+    if (!is_format && !line.starts_with("$Nodes") && !line.starts_with("$ParametricNodes") &&
+        !line.starts_with("$Elements"))
+      continue;
+    std::getline(stream, count);
+    ++number;
+    if (is_format && !count.starts_with("2")) return;
+    int value = 0;
+    if (!is_format && std::sscanf(count.c_str(), "%d", &value) != 1)
+      throw UserError("Mesh file " + in_quotes(file) + " is damaged: its line " + std::to_string(number) +
+                      " must say how many entries the section " + line.substr(0, line.find_first_of("\r\n ")) +
+                      " has. Save it from gmsh again, as version 4.1.");
+  }
+}
+
 /// gmsh 4.8 crashes over some damaged meshes, and would take the program with it. So a child process reads a .msh
 /// first; that costs the time of reading it once more. (A .geo has cells only once it is meshed.)
 void check_that_gmsh_survives(const std::string& file) {
@@ -322,7 +344,10 @@ void GmshSession::fail_on_errors(const std::string& doing, const std::string& th
 DeclaredGroups load_model(GmshSession& session, const MeshSource& source) {
   check_file(source);
   const bool script = source.file.ends_with(".geo");
-  if (!script) check_that_gmsh_survives(source.file);
+  if (!script) {
+    check_counts(source.file);
+    check_that_gmsh_survives(source.file);
+  }
   session.run("Mesh file " + in_quotes(source.file) + " cannot be read", [&] { gmsh::open(source.file); });
   const auto groups = script ? names_known_to_gmsh(session) : physical_names(source.file);
   if (source.free) {

@@ -51,8 +51,8 @@ class Effort {
 } // namespace
 
 const std::array<Remedy, std::variant_size_v<Remedy>>& remedies() {
-  static const std::array<Remedy, std::variant_size_v<Remedy>> rungs = {MeritSearch{}, HeldPoints{}, LaggedLimits{},
-                                                                        SofterAugmentation{}, VanishingSupport{}};
+  static const std::array<Remedy, std::variant_size_v<Remedy>> rungs = {
+      MeritSearch{}, HeldPoints{}, LaggedLimits{}, SofterAugmentation{}, LoopOnMultipliers{}, VanishingSupport{}};
   return rungs;
 }
 
@@ -62,6 +62,7 @@ const char* name_of(const Remedy& remedy) {
     const char* operator()(HeldPoints) const { return "held_points"; }
     const char* operator()(LaggedLimits) const { return "lagged_friction"; }
     const char* operator()(SofterAugmentation) const { return "softer_augmentation"; }
+    const char* operator()(LoopOnMultipliers) const { return "uzawa_loop"; }
     const char* operator()(VanishingSupport) const { return "vanishing_support"; }
   };
   return std::visit(Names{}, remedy);
@@ -101,6 +102,7 @@ bool Ladder::applies(const Remedy& remedy, const Trouble& trouble) const {
   if (std::holds_alternative<LaggedLimits>(remedy))
     return std::any_of(forms_.begin(), forms_.end(), [](const auto* form) { return form->has_limits(); });
   if (std::holds_alternative<SofterAugmentation>(remedy)) return newton_.watch().has_points();
+  if (std::holds_alternative<LoopOnMultipliers>(remedy)) return hooks_.loop != nullptr;
   if (std::holds_alternative<VanishingSupport>(remedy)) return !trouble.free.empty();
   return true;
 }
@@ -226,6 +228,13 @@ SolveOutcome Ladder::use(SofterAugmentation, Vec unknowns) {
     }
   }
   effort.add(hooks_.solve());
+  return effort.total();
+}
+
+SolveOutcome Ladder::use(LoopOnMultipliers, Vec unknowns) {
+  newton_.imbalance(unknowns); // takes the multipliers from the unknowns
+  Effort effort;
+  if (effort.add(hooks_.loop()).converged) effort.add(hooks_.solve());
   return effort.total();
 }
 

@@ -30,11 +30,15 @@ struct LaggedLimits {};
 /// The augmentation is a thousandth, a hundredth and a tenth of what it is by the deck, each solution being the next
 /// guess.
 struct SofterAugmentation {};
+/// Multipliers that are unknowns are held and updated by Uzawa's loop, whose solves are those of the displacements
+/// alone.
+struct LoopOnMultipliers {};
 /// Bodies are supported against moving from the last accepted state, ever less: by ratios (see ViscousForm) from 1 to
 /// 1e-6, then not at all.
 struct VanishingSupport {};
 
-using Remedy = std::variant<MeritSearch, HeldPoints, LaggedLimits, SofterAugmentation, VanishingSupport>;
+using Remedy =
+    std::variant<MeritSearch, HeldPoints, LaggedLimits, SofterAugmentation, LoopOnMultipliers, VanishingSupport>;
 
 /// The rungs, in their order.
 const std::array<Remedy, std::variant_size_v<Remedy>>& remedies();
@@ -52,6 +56,10 @@ class Ladder {
     std::function<void()> restart;
     /// Solves the true equations from the unknowns: Newton, or a loop around it.
     std::function<SolveOutcome()> solve;
+    /// Holds the multipliers that are unknowns, updates them by Uzawa's loop until a solve can start from there or
+    /// often enough, and makes them unknown again. Converged when the last state is in equilibrium with them. Absent
+    /// where none are.
+    std::function<SolveOutcome()> loop;
     /// A support by ViscousForm of the ratio, meant for an increment of the length dt from the last accepted state.
     std::function<std::unique_ptr<Form>(double ratio)> make_support;
     /// Told of every rung tried and how it went.
@@ -84,6 +92,7 @@ class Ladder {
   SolveOutcome use(HeldPoints, Vec unknowns);
   SolveOutcome use(LaggedLimits, Vec unknowns);
   SolveOutcome use(SofterAugmentation, Vec unknowns);
+  SolveOutcome use(LoopOnMultipliers, Vec unknowns);
   SolveOutcome use(VanishingSupport, Vec unknowns);
   SolveOutcome pivot(Vec unknowns);
 

@@ -16,13 +16,21 @@ namespace {
 constexpr PetscInt multigrid_from_2d = 1'000'000;
 constexpr PetscInt multigrid_from_3d = 500'000;
 
-std::string in_words(SNESConvergedReason reason, double relative) {
+/// Another formulation that may get there: multipliers updated one by one where they are unknowns, unknown ones
+/// elsewhere.
+std::string another_way(const Problem& problem) {
+  if (problem.switching().empty()) return "smaller increments may help";
+  return std::string("smaller increments or `enforce: ") +
+         (problem.layout().num_extra() > 0 ? "{uzawa: {}}" : "{semismooth: {}}") + "` may help";
+}
+
+std::string in_words(SNESConvergedReason reason, double relative, const Problem& problem) {
   switch (reason) {
   case SNES_DIVERGED_FNORM_NAN:
     return "the residual is not a number";
   case SNES_DIVERGED_MAX_IT:
     return "Newton's method used all its iterations; the out-of-balance force is still " + std::to_string(relative) +
-           " of the forces in play (-snes_max_it, smaller increments or `enforce: {uzawa: {}}` may help)";
+           " of the forces in play (" + another_way(problem) + ")";
   case SNES_DIVERGED_LINEAR_SOLVE:
     return "the linear solver failed: the tangent is singular (a body that nothing holds?) or, for an iterative "
            "solver, "
@@ -233,7 +241,7 @@ SolveOutcome outcome_of(SNES snes, const Problem& problem) {
   outcome.newton = static_cast<int>(newton);
   outcome.linear = static_cast<int>(linear);
   outcome.residual = relative_to_forces(norm, problem);
-  outcome.reason = outcome.converged ? "converged" : in_words(reason, outcome.residual);
+  outcome.reason = outcome.converged ? "converged" : in_words(reason, outcome.residual, problem);
   if (!outcome.converged && !problem.failure().empty()) outcome.reason = problem.failure();
   return outcome;
 }

@@ -15,6 +15,8 @@ class UzawaLoop {
 
   /// From the state in `unknowns` and the multipliers held now. Collective.
   SolveOutcome solve(Vec unknowns);
+  /// Has the last solve left the state in equilibrium with the multipliers held, settled or not?
+  bool is_balanced() const { return inner_.converged; }
 
  private:
   static PetscErrorCode evaluate(SNES, Vec multipliers, Vec change, void* self);

@@ -33,6 +33,7 @@ CASES = {
     "couple_of_vi": ("touch_at_a_point", "vi", 1, 4, "take `enforce: {semismooth: {}}`", enforce({"semismooth": {}})),
     "couple_of_the_dual_basis": ("touch_at_a_point_friction", "dual", 1, 4, "take `enforce: {semismooth: {}}`", enforce({"semismooth": {}})),
     "slave_normal": ("edge_back_and_forth", "penalty", 1, 4, "take `projection: {closest_point: {}}`", closest_point),
+    "rubber_by_uzawa": ("rubber_at_half", "uzawa", 1, 3, "smaller increments or `enforce: {semismooth: {}}` may help", enforce({"semismooth": {}})),
     "rubber_by_penalty": ("rubber_at_half", "penalty", 0, 4, "take `enforce: {semismooth: {}}`", enforce({"semismooth": {}})),
 }
 

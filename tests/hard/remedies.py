@@ -22,6 +22,7 @@ CASES = {
     "held_points of the dual basis": ("wedge", 0, {"semismooth": {"basis": "dual", "alpha": 1e4}}, 3.0, []),
     "lagged_friction": ("deep_ridge_friction", 0, {"penalty": {"alpha": 1000}}, None, []),
     "softer_augmentation": ("rocking", 0, {"penalty": {"alpha": 1e4}}, None, []),
+    "uzawa_loop": ("rocking", 0, {"semismooth": {"alpha": 1000}}, None, []),
     "vanishing_support": ("rocking", 0, {"penalty": {"alpha": 1e4}}, 2.0, ["-snes_linesearch_type", "basic"]),
     "cutbacks": ("rocking", 0, {"semismooth": {"alpha": 100}}, None, []),
 }

@@ -67,7 +67,10 @@ struct Fixture : LonePair {
 
   /// Tractions as large as those of the penalty; shear in the frame of `turn`.
   void hold_multipliers(const Matrix3d& turn) {
-    if (!std::holds_alternative<Uzawa>(scene.enforcement)) return;
+    if (std::holds_alternative<Uzawa>(scene.enforcement)) hold_any_multipliers(turn);
+  }
+  /// The same where they are unknowns.
+  void hold_any_multipliers(const Matrix3d& turn) {
     std::vector<double> normal;
     std::vector<std::vector<double>> shear(scene.dim);
     for (const auto node : form->nodes().nodes) {

@@ -16,12 +16,27 @@ using namespace amontons::test;
 
 namespace {
 
+/// Nothing but a note of the last iterate.
+class Witness : public Form {
+ public:
+  const char* name() const override { return "witness"; }
+  void couple(Coupling&) const override {}
+  void add_residual(const State& state, Residual&) override {
+    displacement.assign(state.displacement.begin(), state.displacement.end());
+  }
+  void add_tangent(const State&, Tangent&) override {}
+  bool tangent_is_constant() const override { return true; }
+  std::vector<double> displacement;
+};
+
 /// The upper block is pressed down by 0.03 t.
 struct Fixture {
   Mesh mesh;
   std::vector<NodeField> fields;
   std::unique_ptr<DofLayout> layout;
   std::unique_ptr<Problem> problem;
+  BulkForm* bulk = nullptr;
+  Witness* witness = nullptr;
   PairReport* pair = nullptr;
   MortarForm* mortar = nullptr;
 
@@ -32,7 +47,12 @@ struct Fixture {
     const Space space = dim == 2 ? Space::PlaneStrain : Space::Solid;
     const std::vector<SmallLaw> laws = {Elastic{300.0, 0.2}, Elastic{100.0, 0.3}};
     std::vector<std::unique_ptr<Form>> forms;
-    forms.push_back(std::make_unique<BulkForm>(*layout, space, laws));
+    auto solid = std::make_unique<BulkForm>(*layout, space, laws);
+    auto noting = std::make_unique<Witness>();
+    bulk = solid.get();
+    witness = noting.get();
+    forms.push_back(std::move(solid));
+    forms.push_back(std::move(noting));
     ContactPair declared{.name = "interface",
                          .slave = "upper_bottom",
                          .master = std::string("lower_top"),
@@ -57,6 +77,12 @@ struct Fixture {
       prescribed.push_back({"top", c, c == dim - 1 ? Expression("-0.03*t", {}) : Expression(0.0)});
     }
     problem = std::make_unique<Problem>(*layout, std::move(forms), prescribed);
+  }
+  /// Energy of both blocks in the last iterate, over all ranks.
+  double energy() const {
+    double energy = bulk->stored_energy({.time = 1.0, .displacement = witness->displacement});
+    MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, mesh.comm);
+    return energy;
   }
   ContactTotals totals(Vec u) const { return pair->totals(problem->state_at(u)); }
 };
@@ -113,6 +139,36 @@ TEST_CASE("from no contact, from contact everywhere and from a random guess to t
     CHECK(totals.area < 0.8);
     CHECK(totals.largest_penetration < 1e-12);
   }
+}
+
+TEST_CASE("after the free iterations each step lowers the energy, from any guess") {
+  for (const int free : {0, 2})
+    for (const Guess kind : {Guess::Zero, Guess::AllTouch, Guess::Random}) {
+      CAPTURE(free);
+      CAPTURE(int(kind));
+      const OptionScope scope;
+      PetscOptionsSetValue(nullptr, "-vi_free_iterations", std::to_string(free).c_str());
+      Fixture fixture(2, 24, BoundConstraint{});
+      MortarTransform transform(*fixture.problem, {fixture.mortar});
+      choose_bounded_solver(*fixture.problem);
+      std::vector<double> energies; // of the iterates
+      BoundedNewton newton(*fixture.problem, transform, [&] {
+        energies.push_back(fixture.energy());
+        return false;
+      });
+      const auto u = fixture.layout->new_vector();
+      guess(kind, fixture.mesh, transform, u);
+      fixture.problem->begin_increment(1.0, u);
+      CHECK(newton.solve(u).converged);
+      REQUIRE(energies.size() > std::size_t(free) + 2);
+      const double rounding = 1e-13 * energies.front();
+      int fell = 0;
+      for (std::size_t i = static_cast<std::size_t>(free) + 1; i < energies.size(); ++i) {
+        CHECK(energies[i] <= energies[i - 1] + rounding);
+        fell += energies[i] < energies[i - 1] - rounding;
+      }
+      CHECK(fell > 0);
+    }
 }
 
 TEST_CASE("the answer is that of semismooth within the discretization error, and nears it with the mesh") {

@@ -244,6 +244,57 @@ TEST_CASE("the defect of held multipliers is the potential's derivative") {
   }
 }
 
+TEST_CASE(
+    "unknown multipliers that are held: forces of what is held, equations that lead there, and nothing is left of it") {
+  for (const int dim : {2, 3}) {
+    CAPTURE(dim);
+    Fixture fixture(dim, Semismooth{0}), other(dim, Uzawa{}); // the latter holds the same tractions
+    const auto residual = [](Fixture& of) {
+      auto result = of.layout->new_vector();
+      of.problem->residual(of.u, result);
+      return result;
+    };
+    const auto same_forces = [](const Fixture& of, Vec one, Vec two) {
+      VecReader a(one), b(two);
+      int same = 1;
+      for (PetscInt i = 0; i < of.mesh.num_owned * of.mesh.dim; ++i)
+        same = same && a[i] == b[i];
+      MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+      return same == 1;
+    };
+    const auto free = residual(fixture);
+    const auto unknown = fixture.form->multipliers();
+    CHECK_FALSE(same_forces(fixture, free, residual(other)));
+    fixture.form->hold_multipliers(other.form->multipliers());
+    CHECK(same_forces(fixture, residual(fixture), residual(other)));
+    check_tangent(fixture);
+
+    // With unknowns s μ = λ held the multipliers' equations hold, whatever the gaps are.
+    {
+      VecArray values(fixture.u);
+      const auto& nodes = fixture.form->nodes().nodes;
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const PetscInt at = fixture.layout->extra_equation(0, nodes[i]) - fixture.layout->first_equation();
+        if (at >= 0 && at < values.size())
+          values[at] = fixture.form->multipliers()[i] / fixture.form->multiplier_scale();
+      }
+    }
+    {
+      const auto reached = residual(fixture);
+      const VecReader values(reached);
+      for (PetscInt i = fixture.mesh.num_owned * dim; i < values.size(); ++i)
+        CHECK(std::abs(values[i]) < 1e-14);
+    }
+    fixture.set(fixture.u, 0.0, 1.0);
+    fixture.form->release_multipliers();
+    PetscBool equal = PETSC_FALSE;
+    VecEqual(residual(fixture), free, &equal);
+    CHECK(equal == PETSC_TRUE);
+    CHECK(fixture.form->multipliers() == unknown);
+    check_tangent(fixture);
+  }
+}
+
 TEST_CASE("bodies held by nothing else get a first guess where they are nearest") {
   const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, 2, 3, 4, 0.01);
   const DofLayout layout(mesh, {}, {});

@@ -48,6 +48,18 @@ TEST_CASE("finite kinematics: tangent of the whole contact residual in stick, sl
         }
 }
 
+TEST_CASE("finite kinematics: tangent where unknown multipliers are held elsewhere") {
+  for (const int dim : {2, 3})
+    for (const auto motion : {Motion::Stick, Motion::Slip, Motion::Mixed}) {
+      CAPTURE(dim);
+      CAPTURE(int(motion));
+      const auto fixture = prepared(
+          {.dim = dim, .enforcement = Semismooth{0}, .law = Coulomb{.mu = 0.3, .cohesion = 0.5}}, motion, turn_of(dim));
+      fixture->hold_any_multipliers(turn_of(dim));
+      check_tangent(*fixture);
+    }
+}
+
 TEST_CASE("finite kinematics: tangent with the slave's normal, around an axis, and over rigid shapes") {
   const FrictionLaw law = Coulomb{.mu = 0.3, .cohesion = 0.5};
   for (const int dim : {2, 3})

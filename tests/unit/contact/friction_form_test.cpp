@@ -56,7 +56,10 @@ struct Fixture : LonePair {
   }
 
   explicit Fixture(const Scene& s) : LonePair(turned_mesh(s), declare_pair(s)), scene(s) {
-    if (!std::holds_alternative<Uzawa>(scene.enforcement)) return;
+    if (std::holds_alternative<Uzawa>(scene.enforcement)) hold_multipliers();
+  }
+
+  void hold_multipliers() {
     std::vector<double> normal;
     std::vector<std::vector<double>> shear(scene.dim);
     for (const auto node : form->nodes().nodes) {
@@ -188,6 +191,21 @@ TEST_CASE("tangent of a frictional pair on segments") {
       CAPTURE(enforcement.index());
       Fixture fixture({.dim = dim, .enforcement = enforcement, .integration = SegmentIntegration{}});
       check_tangent(fixture, Motion::Mixed);
+    }
+}
+
+TEST_CASE("tangent of a frictional pair whose unknown multipliers are held elsewhere, and let go again") {
+  for (const int dim : {2, 3})
+    for (const auto motion : {Motion::Stick, Motion::Slip, Motion::Mixed}) {
+      CAPTURE(dim);
+      CAPTURE(int(motion));
+      Fixture fixture({.dim = dim, .enforcement = Semismooth{0}});
+      fixture.hold_multipliers();
+      check_tangent(fixture, motion);
+      Fixture released({.dim = dim, .enforcement = Semismooth{0}});
+      released.hold_multipliers();
+      released.form->release_multipliers();
+      check_tangent(released, motion);
     }
 }
 

@@ -320,6 +320,19 @@ TEST_CASE("a file that is none is refused by name") {
   CHECK(has(refusal({file, {{"h", 1.0}}, 1}), "takes no parameters"));
 }
 
+TEST_CASE("a section that does not say how many entries it has is refused with its line") {
+  const TemporaryFolder folder;
+  const auto sound = msh2({"0 0 0", "1 0 0", "0 1 0"}, {"2 1 2 3"});
+  for (const std::string section : {"$Nodes", "$Elements"}) {
+    auto text = sound;
+    text.insert(text.find(section) + section.size() + 1, "nts\n");
+    const auto line = std::to_string(2 + std::count(sound.begin(), sound.begin() + sound.find(section), '\n'));
+    CHECK(has(refusal({folder.write("counts.msh", text), {}, 1}),
+              "line " + line + " must say how many entries the section " + section + " has"));
+  }
+  CHECK(refusal({folder.write("sound.msh", sound), {}, 1}).empty());
+}
+
 TEST_CASE("every fault of a mesh is told at once, and a refusal leaves nothing behind for the next") {
   const TemporaryFolder folder;
   const std::vector<std::string> nodes = {"0 0 0", "1 0 0", "1 1 0", "0 1 0", "2 0 0", "2 1 0", "3 0 0"};

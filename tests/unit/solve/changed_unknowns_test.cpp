@@ -170,6 +170,7 @@ TEST_CASE("conditions that go round in a cycle are noticed and named, and holdin
   Ladder ladder(problem, newton,
                 {.restart = restart,
                  .solve = [&] { return newton.solve(u); },
+                 .loop = nullptr,
                  .make_support = nullptr,
                  .tell = [&](const std::string& line) { log += line + "\n"; }});
   const auto alone = ladder.attempt(HeldPoints{}, u);
