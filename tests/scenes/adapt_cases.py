@@ -101,20 +101,22 @@ def reference_3d(bench):
 
 
 def uniform_3d(bench):
-    """Linear tetrahedra with a target of 2 % in the peak against a nearly uniform mesh of them with at least five times the
-    unknowns, which is no nearer to Hertz and takes at least three times the CPU time, although it has the cheaper solver for
-    its size (CPU time of one rank, all passes of the adaptive run)."""
-    adaptive = bench.run("hertz_3d_adaptive", {"mesh.order": 1, "adapt.target_error": 0.02}, ranks=1)
-    uniform = bench.run("hertz_3d_adaptive", {"mesh.order": 1, "mesh.parameters.n": 20, "mesh.parameters.patch": 8,
+    """1 % in the peak: the deck (quadratic tetrahedra) against a nearly uniform mesh with at least five times the unknowns and
+    three times the CPU time, which is still farther off. The uniform mesh has the better order (linear tetrahedra: quadratic ones
+    of the same number are far too large) and the solver that is cheaper for its size. CPU time of one rank, all passes of the
+    adaptive run."""
+    adaptive = bench.run("hertz_3d_adaptive", ranks=1)
+    uniform = bench.run("hertz_3d_adaptive", {"mesh.order": 1, "mesh.parameters.n": 26, "mesh.parameters.patch": 8,
                                               "adapt.max_passes": 1, "adapt.max_unknowns": 400000,
                                               "contact.0.enforce": {"uzawa": {}},
                                               "petsc": {"ksp_type": "cg", "pc_type": "gamg"}}, ranks=1)
-    passes_of(bench, "adaptive", adaptive, 0.02)
+    passes_of(bench, "adaptive", adaptive, 0.01)
     sizes = [sum(run.summary["scene"]["unknowns"].values()) for run in (adaptive, uniform)]
     times = [run.summary["resources"]["cpu_seconds"] for run in (adaptive, uniform)]
     errors = [true_error("hertz_3d_adaptive", run)[0] for run in (adaptive, uniform)]
-    bench.below("true error of the adaptive mesh", errors[0], 0.02)
-    bench.below("true error of the adaptive mesh over that of the uniform one", errors[0] / errors[1], 1.0)
+    print(f"     unknowns {sizes}, CPU seconds {times}, true errors {errors}")
+    bench.below("true error of the adaptive mesh", errors[0], 0.01)
+    bench.below("1 % over the true error of the uniform mesh", 0.01 / errors[1], 1.0)
     bench.below("adaptive / uniform unknowns", sizes[0] / sizes[1], 1 / 5)
     bench.below("adaptive / uniform CPU time", times[0] / times[1], 1 / 3)
 
