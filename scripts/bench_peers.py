@@ -132,12 +132,15 @@ def solve(task, deck, place, runs):
     command = module.write_input(place, deck, mesh, motion, reaction_groups(deck))
     status, word, cpu, wall, peak = run_limited(command, place, runs)
     record = {"outcome": word or "certified", "message": "", "wall_seconds": wall, "load_average": load}
-    if not word:
+    said = (place / "output.txt").read_text(encoding="utf-8", errors="replace").strip()
+    if word:
+        record["message"] = f"after {cpu:.0f} s of CPU, {peak / 1e6:.0f} MB: {said.rpartition(chr(10))[2]}"
+    else:
         found = module.read_results(place, deck, mesh)
         record.update(cpu_seconds=cpu, peak_memory_bytes=peak)
         if status or found is None:
             return {**record, "outcome": "crashed" if status else "not converged",
-                    "message": (place / "output.txt").read_text(encoding="utf-8", errors="replace").strip()[-200:]}
+                    "message": said[-200:]}
         write_results(place, deck, mesh, found)
     return record
 

@@ -11,6 +11,7 @@ softer body's E, where forces and gaps are of one size, and given back in those 
 """
 
 import json
+import time
 from pathlib import Path
 
 import getfem as gf
@@ -111,6 +112,7 @@ def march(model, bodies, job):
                 model.set_variable(f"value_{group}", value)
             iterations += model.solve("max_iter", 60, "max_res", TOLERANCE, "lsolver", "mumps")[0]
             increments += 1
+            print(f"increment {increments} after {iterations} iterations, {time.process_time():.1f} s of CPU", flush=True)
             if job["mu"] is not None:
                 for body in bodies:
                     model.set_variable(f"old_{body.name}", model.variable(body.variable))
