@@ -1,27 +1,19 @@
 #include "form/block_adder.hpp"
+#include "square_matrix.hpp"
 
 #include <algorithm>
 #include <doctest/doctest.h>
 
 using namespace amontons;
+using namespace amontons::test;
 
 namespace {
 
 constexpr PetscInt size = 30;
 
-void assemble(Mat matrix) {
-  MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY);
-  MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY);
-}
-
 /// A dense matrix kept as AIJ, full of zeros.
 MatHandle zeros() {
-  MatHandle matrix;
-  REQUIRE(MatCreate(PETSC_COMM_WORLD, matrix.put()) == 0);
-  MatSetSizes(matrix, PETSC_DECIDE, PETSC_DECIDE, size, size);
-  MatSetType(matrix, MATAIJ);
-  MatSeqAIJSetPreallocation(matrix, size, nullptr);
-  MatMPIAIJSetPreallocation(matrix, size, nullptr, size, nullptr);
+  auto matrix = square_matrix(size, size);
   PetscInt first = 0, end = 0;
   MatGetOwnershipRange(matrix, &first, &end);
   for (PetscInt row = first; row < end; ++row)
@@ -42,15 +34,6 @@ std::vector<double> block_of(PetscInt i, std::size_t rows) {
   for (std::size_t k = 0; k < block.size(); ++k)
     block[k] = 1.0 + 0.25 * double(k) - 0.5 * double(i);
   return block;
-}
-
-double distance(Mat one, Mat other) {
-  MatHandle change;
-  MatDuplicate(one, MAT_COPY_VALUES, change.put());
-  MatAXPY(change, -1.0, other, SAME_NONZERO_PATTERN);
-  double norm = 0.0;
-  MatNorm(change, NORM_FROBENIUS, &norm);
-  return norm;
 }
 
 } // namespace

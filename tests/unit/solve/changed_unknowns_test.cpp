@@ -37,61 +37,42 @@ MatHandle identity(const DofLayout& layout) {
 }
 
 /// Conditions z_i = 0 in place of equilibrium w_i = 0 where z_i <= w_i: min(z, w) = 0, component by component.
-class ZeroOrBalanced : public CondensedUnknowns, public Switching {
+class ZeroOrBalanced : public CondensedUnknowns, public SwitchedComponents {
  public:
   explicit ZeroOrBalanced(const DofLayout& layout)
-      : layout_(layout), identity_(identity(layout)), closed_(std::size_t(layout.mesh().num_owned) * layout.dim(), 0),
-        wanted_(closed_) {}
+      : SwitchedComponents(layout, "conditions"), layout_(layout), identity_(identity(layout)) {}
 
   bool update(double) override { return false; }
   Mat transform() const override { return identity_; }
   Mat inverse() const override { return identity_; }
   void release() override {}
+  using SwitchedComponents::hold;
   void hold() override {}
   void evaluate(Vec changed, Vec forces, Evaluation, Vec residual) override {
     const VecReader z(changed), w(forces);
     VecArray values(residual);
     const int d = layout_.dim();
     rows_.clear();
-    for (std::size_t i = 0; i < closed_.size(); ++i) {
+    for (std::size_t i = 0; i < num_components(); ++i) {
       const auto unknown = static_cast<PetscInt>(i);
-      wanted_[i] = z[unknown] <= w[unknown];
-      closed_[i] = holds_.empty() || holds_[i] == Hold::Free ? wanted_[i] : holds_[i] == Hold::On;
-      if (closed_[i]) values[unknown] = z[unknown];
+      const bool is_closed = turn(i, z[unknown] <= w[unknown]);
+      if (is_closed) values[unknown] = z[unknown];
       if (i % d == 0) {
         rows_.push_back({.size = d});
         for (int r = 0; r < d; ++r)
           rows_.back().equations[r] = layout_.first_equation() + unknown + r;
       }
-      rows_.back().forces[i % d][i % d] = closed_[i] ? 0.0 : 1.0;
-      rows_.back().motion[i % d][i % d] = closed_[i] ? 1.0 : 0.0;
+      rows_.back().forces[i % d][i % d] = is_closed ? 0.0 : 1.0;
+      rows_.back().motion[i % d][i % d] = is_closed ? 1.0 : 0.0;
     }
   }
   std::span<const ConditionRows> rows() const override { return rows_; }
   std::vector<Switching*> switching() override { return {this}; }
 
-  const std::string& switch_name() const override { return name_; }
-  std::array<double, 3> switch_place(std::size_t i) const override {
-    std::array<double, 3> place{};
-    std::ranges::copy(layout_.mesh().position(static_cast<std::int32_t>(i) / layout_.dim()), place.begin());
-    place[0] += 1e-3 * static_cast<double>(i % layout_.dim()); // the components one after another
-    return place;
-  }
-  std::vector<std::uint8_t> branches() const override { return closed_; }
-  void hold(std::vector<Hold> holds) override { holds_ = std::move(holds); }
-  std::vector<std::uint8_t> wanted() const override { return wanted_; }
-  bool has_limits() const override { return false; }
-  void hold_limits() override {}
-  void release_limits() override {}
-  void scale_augmentation(double) override {}
-
  private:
   const DofLayout& layout_;
   MatHandle identity_;
-  std::vector<std::uint8_t> closed_, wanted_;
-  std::vector<Hold> holds_;
   std::vector<ConditionRows> rows_;
-  std::string name_ = "conditions";
 };
 
 /// û >= 0 everywhere.

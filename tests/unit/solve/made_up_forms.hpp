@@ -97,50 +97,17 @@ class SelfLimited : public Form, public Switching {
   std::string name_ = "limits";
 };
 
-/// Two or three complementary pairs at each node, z the displacement: F_i = min(z_i, w_i), w = M z + q. Component i is
-/// on where z_i > w_i: then F_i = w_i.
-class Complementarity : public Form, public Switching {
+/// Every displacement component of this rank's nodes is a point that is on or off, without limits and augmentation.
+class SwitchedComponents : public Switching {
  public:
-  using Matrix = std::vector<std::vector<double>>;
-  Complementarity(const DofLayout& layout, Matrix matrix, std::vector<double> q)
-      : layout_(layout), matrix_(std::move(matrix)), q_(std::move(q)),
-        on_(std::size_t(layout.mesh().num_owned) * layout.dim(), 0), wanted_(on_) {}
+  SwitchedComponents(const DofLayout& layout, std::string name)
+      : layout_(layout), name_(std::move(name)), on_(std::size_t(layout.mesh().num_owned) * layout.dim(), 0),
+        wanted_(on_) {}
 
-  const char* name() const override { return "complementarity"; }
-  bool tangent_is_symmetric() const override { return false; }
-  void couple(Coupling& coupling) const override {
-    for (std::int32_t node = 0; node < layout_.mesh().num_owned; ++node)
-      coupling.add(equations(node));
-  }
-  void add_residual(const State& state, Residual& residual) override {
-    const int d = layout_.dim();
-    for (std::size_t i = 0; i < on_.size(); ++i) {
-      const double z = state.displacement[i];
-      double w = q_[i % d];
-      for (int c = 0; c < d; ++c)
-        w += matrix_[i % d][c] * state.displacement[i / d * d + c];
-      wanted_[i] = z > w;
-      on_[i] = holds_.empty() || holds_[i] == Hold::Free ? wanted_[i] : holds_[i] == Hold::On;
-      residual.nodal()[i] += on_[i] ? w : z;
-    }
-  }
-  void add_tangent(const State&, Tangent& tangent) override {
-    const int d = layout_.dim();
-    std::vector<double> block(std::size_t(d) * d);
-    for (std::int32_t node = 0; node < layout_.mesh().num_owned; ++node) {
-      for (int r = 0; r < d; ++r)
-        for (int c = 0; c < d; ++c)
-          block[r * d + c] = on_[std::size_t(node) * d + r] ? matrix_[r][c] : (r == c ? 1.0 : 0.0);
-      tangent.add(equations(node), block);
-    }
-  }
-
-  Switching* switching() override { return this; }
   const std::string& switch_name() const override { return name_; }
   std::array<double, 3> switch_place(std::size_t i) const override {
-    const auto X = layout_.mesh().position(static_cast<std::int32_t>(i) / layout_.dim());
     std::array<double, 3> place{};
-    std::copy(X.begin(), X.end(), place.begin());
+    std::ranges::copy(layout_.mesh().position(static_cast<std::int32_t>(i) / layout_.dim()), place.begin());
     place[0] += 1e-3 * static_cast<double>(i % layout_.dim()); // the components one after another
     return place;
   }
@@ -151,6 +118,60 @@ class Complementarity : public Form, public Switching {
   void hold_limits() override {}
   void release_limits() override {}
   void scale_augmentation(double) override {}
+
+ protected:
+  std::size_t num_components() const { return on_.size(); }
+  bool is_on(std::size_t i) const { return on_[i] != 0; }
+  /// As wanted unless held; returns what it is then.
+  bool turn(std::size_t i, bool wanted) {
+    wanted_[i] = wanted;
+    on_[i] = holds_.empty() || holds_[i] == Hold::Free ? wanted : holds_[i] == Hold::On;
+    return is_on(i);
+  }
+
+ private:
+  const DofLayout& layout_;
+  std::string name_;
+  std::vector<std::uint8_t> on_, wanted_;
+  std::vector<Hold> holds_;
+};
+
+/// Two or three complementary pairs at each node, z the displacement: F_i = min(z_i, w_i), w = M z + q. Component i is
+/// on where z_i > w_i: then F_i = w_i.
+class Complementarity : public Form, public SwitchedComponents {
+ public:
+  using Matrix = std::vector<std::vector<double>>;
+  Complementarity(const DofLayout& layout, Matrix matrix, std::vector<double> q)
+      : SwitchedComponents(layout, "pairs"), layout_(layout), matrix_(std::move(matrix)), q_(std::move(q)) {}
+
+  const char* name() const override { return "complementarity"; }
+  bool tangent_is_symmetric() const override { return false; }
+  void couple(Coupling& coupling) const override {
+    for (std::int32_t node = 0; node < layout_.mesh().num_owned; ++node)
+      coupling.add(equations(node));
+  }
+  void add_residual(const State& state, Residual& residual) override {
+    const int d = layout_.dim();
+    for (std::size_t i = 0; i < num_components(); ++i) {
+      const double z = state.displacement[i];
+      double w = q_[i % d];
+      for (int c = 0; c < d; ++c)
+        w += matrix_[i % d][c] * state.displacement[i / d * d + c];
+      residual.nodal()[i] += turn(i, z > w) ? w : z;
+    }
+  }
+  void add_tangent(const State&, Tangent& tangent) override {
+    const int d = layout_.dim();
+    std::vector<double> block(std::size_t(d) * d);
+    for (std::int32_t node = 0; node < layout_.mesh().num_owned; ++node) {
+      for (int r = 0; r < d; ++r)
+        for (int c = 0; c < d; ++c)
+          block[r * d + c] = is_on(std::size_t(node) * d + r) ? matrix_[r][c] : (r == c ? 1.0 : 0.0);
+      tangent.add(equations(node), block);
+    }
+  }
+
+  Switching* switching() override { return this; }
 
  private:
   std::vector<PetscInt> equations(std::int32_t node) const {
@@ -163,9 +184,6 @@ class Complementarity : public Form, public Switching {
   const DofLayout& layout_;
   Matrix matrix_;
   std::vector<double> q_;
-  std::vector<std::uint8_t> on_, wanted_;
-  std::vector<Hold> holds_;
-  std::string name_ = "pairs";
 };
 
 } // namespace amontons::test
