@@ -7,6 +7,7 @@
 #include "output/text_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <numeric>
 
@@ -219,6 +220,27 @@ std::vector<double> picked(MPI_Comm comm, int components, std::vector<double> in
   return values;
 }
 
+/// Values per node or row of an array. Throws the same on all ranks.
+int read_components(Hdf5File& file, const std::string& path, const std::string& attribute) {
+  const auto components = file.read_integer(root, attribute);
+  if (components < 1) refuse(path, "it is damaged: its attribute " + attribute + " is " + std::to_string(components));
+  return static_cast<int>(components);
+}
+
+/// Throws unless the numbers of rows of all elements are whole and add up to those in the file. Collective.
+void check_rows(MPI_Comm comm, const std::string& path, const std::vector<double>& rows_in_file, std::int64_t all) {
+  double sum = 0.0;
+  bool whole = true;
+  for (const double rows : rows_in_file) {
+    whole = whole && rows >= 0.0 && rows <= double(all) && rows == std::floor(rows);
+    sum += rows;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, comm);
+  together(comm, [&] {
+    if (!whole || sum != double(all)) refuse(path, "it is damaged: its tables of rows are not those of its arrays");
+  });
+}
+
 void read_nodal(Hdf5File& file, const Mesh& mesh, const std::string& path, Checkpoint& checkpoint) {
   const Share share = even_share(mesh.comm, mesh.num_global);
   const auto keys = joined(file.read(root + "/keys", 2 * share.size));
@@ -231,7 +253,7 @@ void read_nodal(Hdf5File& file, const Mesh& mesh, const std::string& path, Check
   const auto count = static_cast<std::size_t>(file.read_integer(root, "nodal_count"));
   for (std::size_t i = 0; i < count; ++i) {
     const std::string name = file.read_string(root, attribute("nodal", i, "name"));
-    const int components = static_cast<int>(file.read_integer(root, attribute("nodal", i, "components")));
+    const int components = read_components(file, path, attribute("nodal", i, "components"));
     auto in_file = file.read(dataset("nodal", i), components * share.size);
     checkpoint.nodal[name] = {components, picked(mesh.comm, components, std::move(in_file), rows)};
   }
@@ -260,11 +282,13 @@ void read_rows(Hdf5File& file, const Mesh& mesh, const std::string& path, Checkp
   for (std::size_t i = 0; i < count; ++i) {
     typename Kind::Array array;
     Kind::group(array) = file.read_string(root, attribute(Kind::kind, i, "group"));
-    array.components = static_cast<int>(file.read_integer(root, attribute(Kind::kind, i, "components")));
+    array.components = read_components(file, path, attribute(Kind::kind, i, "components"));
     const Share share = even_share(mesh.comm, file.read_integer(root, attribute(Kind::kind, i, "elements")));
-    const Share rows = even_share(mesh.comm, file.read_integer(root, attribute(Kind::kind, i, "rows")));
+    const auto all_rows = file.read_integer(root, attribute(Kind::kind, i, "rows"));
+    const Share rows = even_share(mesh.comm, all_rows);
     const auto keys = joined(file.read(dataset((kind + "_keys").c_str(), i), 2 * share.size));
     const auto rows_in_file = file.read(dataset((kind + "_rows").c_str(), i), share.size);
+    check_rows(mesh.comm, path, rows_in_file, all_rows);
     auto in_file = file.read(dataset(Kind::kind, i), array.components * rows.size);
     const auto found = rows_of_keys(mesh.comm, keys, share.first, Kind::keys(mesh, array));
     together(mesh.comm, [&] {
