@@ -17,14 +17,11 @@ MatHandle symmetric_part(Mat matrix) {
 
 bool MumpsFactor::factorize(Mat source, PetscObjectState pattern, Kind kind, IS kept) {
   const Phase phase("factorization");
-  const bool is_symmetric = kind != Kind::Unsymmetric;
+  const bool is_symmetric = kind == Kind::Symmetric;
   MatFactorInfo info;
   AMT_PETSC(MatFactorInfoInitialize(&info));
   if (!factor_ || pattern != pattern_ || kind != kind_ || kept) {
-    // PETSc asks the matrix which kind it is.
-    if (kind == Kind::Definite) AMT_PETSC(MatSetOption(source, MAT_SPD, PETSC_TRUE));
     AMT_PETSC(MatGetFactor(source, MATSOLVERMUMPS, is_symmetric ? MAT_FACTOR_CHOLESKY : MAT_FACTOR_LU, factor_.put()));
-    if (kind == Kind::Definite) AMT_PETSC(MatSetOption(source, MAT_SPD, PETSC_FALSE));
     if (kept) AMT_PETSC(MatFactorSetSchurIS(factor_, kept));
     if (is_symmetric)
       AMT_PETSC(MatCholeskyFactorSymbolic(factor_, source, nullptr, &info));

@@ -11,8 +11,7 @@ MatHandle symmetric_part(Mat matrix);
 
 class MumpsFactor {
  public:
-  /// Definite: symmetric and, but for the equations kept, positive definite, so that nothing is pivoted.
-  enum class Kind { Definite, Symmetric, Unsymmetric };
+  enum class Kind { Symmetric, Unsymmetric };
 
   /// Factorizes `source`, of whose pattern `pattern` (MatGetNonzeroState) tells. With `kept`, the numbers of some
   /// equations (one rank only), these are not eliminated: their Schur complement is left in the factor

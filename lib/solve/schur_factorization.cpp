@@ -1,9 +1,8 @@
 // With I the equations outside B, a tangent is
 //   [J_II J_IB; J_BI J_BB],  and J_II, J_IB and J_BI are the same in all tangents of one pattern:
-// they belong to the solid, are symmetric, and stay so under friction; J_II, a solid that is held where it may touch,
-// is definite. MUMPS, asked for the Schur complement of B, makes S = J_BB − J_BI J_II⁻¹ J_IB of the first tangent and
-// factorizes J_II. A later tangent has S + (J_BB − J_BB of the first), and a solve is a forward substitution with J_II,
-// a dense system, a backward substitution.
+// they belong to the solid, are symmetric, and stay so under friction. MUMPS, asked for the Schur complement of B,
+// makes S = J_BB − J_BI J_II⁻¹ J_IB of the first tangent and factorizes J_II. A later tangent has S + (J_BB − J_BB of
+// the first), and a solve is a forward substitution with J_II, a dense system, a backward substitution.
 #include "solve/schur_factorization.hpp"
 
 #include "base/timer.hpp"
@@ -108,7 +107,7 @@ bool SchurFactorization::eliminate_constant() {
   PetscObjectState pattern = 0;
   AMT_PETSC(MatGetNonzeroState(matrix_, &pattern));
   ++factorizations_;
-  if (!constant_.factorize(source, pattern, MumpsFactor::Kind::Definite, kept)) return false;
+  if (!constant_.factorize(source, pattern, MumpsFactor::Kind::Symmetric, kept)) return false;
 
   Mat schur = nullptr;
   MatFactorSchurStatus status = MAT_FACTOR_SCHUR_UNFACTORED;
