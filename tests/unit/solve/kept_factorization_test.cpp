@@ -1,10 +1,12 @@
-// Newton's method with a kept factorization finds what it finds with a factorization for every tangent.
+// Newton's method with a kept factorization, or with multigrid, finds what it finds with a factorization for every
+// tangent.
 #include "solve/kept_factorization.hpp"
 
 #include "form/bulk.hpp"
 #include "material/elastic.hpp"
 #include "solve/newton.hpp"
 #include "solve/solver_choice.hpp"
+#include "solver_support.hpp"
 #include "two_blocks.hpp"
 
 #include <algorithm>
@@ -125,6 +127,28 @@ TEST_CASE("a kept factorization leads to the same displacements with fewer facto
       CHECK(reference.factorizations > 5); // the tangent really changes
       if (swirl == 0.0) CHECK(kept.factorizations < reference.factorizations);
     }
+}
+
+TEST_CASE("multigrid leaves supports where they are put, however unfinished its solves") {
+  const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, 3, 4, 5, 0.0);
+  const DofLayout layout(mesh, {}, {});
+  const OptionScope scope;
+  PetscOptionsSetValue(nullptr, "-ksp_rtol", "1e-2");
+  const auto found = press(layout, 10.0, 0.0, PCGAMG);
+  const auto reference = press(layout, 10.0, 0.0, PCLU);
+  const VecReader values(found.displacement);
+  int tops = 0;
+  for (const auto& [group, moved] : {std::pair("bottom", 0.0), std::pair("top", -0.01)})
+    for (const auto node : mesh.node_groups.at(group)) {
+      if (node >= mesh.num_owned) continue;
+      CHECK(values[layout.equation(node, 2) - layout.first_equation()] == moved);
+      tops += group == std::string("top");
+    }
+  MPI_Allreduce(MPI_IN_PLACE, &tops, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+  CHECK(tops > 0);
+  const auto difference = layout.new_vector();
+  VecWAXPY(difference, -1.0, reference.displacement, found.displacement);
+  CHECK(largest(difference) < 1e-7 * largest(reference.displacement));
 }
 
 TEST_CASE("a singular tangent is an outcome, and the next solve starts anew") {
