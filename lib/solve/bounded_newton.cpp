@@ -1,6 +1,7 @@
 #include "solve/bounded_newton.hpp"
 
 #include "base/timer.hpp"
+#include "solve/kept_supports.hpp"
 
 #include <algorithm>
 #include <array>
@@ -115,6 +116,7 @@ void BoundedNewton::descend(SNESLineSearch search) {
   AMT_PETSC(SNESLineSearchGetVecs(search, &start, &force, &step, &next, &next_force));
   AMT_PETSC(SNESLineSearchGetVIFunctions(search, &project, &inactive_norm));
   AMT_PETSC(SNESGetIterationNumber(snes_, &iteration));
+  clear_prescribed(problem_, step);
   const auto move = problem_.layout().new_vector();
   const auto take = [&](double length) {
     AMT_PETSC(VecWAXPY(next, -length, step, start));

@@ -1,6 +1,7 @@
 #include "solve/condensed_newton.hpp"
 
 #include "base/timer.hpp"
+#include "solve/kept_supports.hpp"
 
 #include <algorithm>
 
@@ -36,6 +37,7 @@ CondensedNewton::CondensedNewton(Problem& problem, CondensedUnknowns& conditions
   AMT_PETSC(SNESSetConvergenceTest(snes_, test_convergence, this, nullptr));
   AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
+  keep_supports(snes_, problem);
   decrease_ = decrease_asked_for(snes_);
   chosen_search_ = chosen_line_search(snes_);
   KSP ksp = nullptr;

@@ -2,6 +2,7 @@
 
 #include "base/timer.hpp"
 #include "solve/factor_memory.hpp"
+#include "solve/kept_supports.hpp"
 #include "solve/tangent_solver.hpp"
 
 #include <algorithm>
@@ -65,13 +66,15 @@ SNESLineSearch backtracking(SNES snes) {
 /// for a convex energy. Full steps that do not pass it are taken whole; a step that does not point downhill, too.
 class EnergySearch {
  public:
-  explicit EnergySearch(SNESLineSearch search) {
+  explicit EnergySearch(SNESLineSearch search) : search_(search) {
     AMT_PETSC(SNESLineSearchGetSNES(search, &snes_));
     AMT_PETSC(SNESLineSearchGetVecs(search, &start_, &force_, &step_, &next_, &next_force_));
   }
   /// Leaves the new iterate and its residual where SNES looks for them, and returns the length.
   double run() {
     PetscScalar promised = 0.0;
+    PetscBool changed = PETSC_FALSE;
+    AMT_PETSC(SNESLineSearchPreCheck(search_, start_, step_, &changed));
     AMT_PETSC(VecDot(force_, step_, &promised));
     double low = 0.0, high = 1.0, length = 1.0, slope = slope_at(1.0), low_slope = -promised, high_slope = slope;
     for (int i = 0; i < most_trials && promised > 0.0 && high_slope > 0.0; ++i) {
@@ -98,6 +101,7 @@ class EnergySearch {
     AMT_PETSC(VecDot(next_force_, step_, &slope));
     return -slope;
   }
+  SNESLineSearch search_ = nullptr;
   SNES snes_ = nullptr;
   Vec start_ = nullptr, force_ = nullptr, step_ = nullptr, next_ = nullptr, next_force_ = nullptr;
 };
@@ -259,11 +263,13 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   // an earlier solve, with stol |u|, and takes any residual for converged.
   AMT_PETSC(SNESSetTolerances(snes_, PETSC_DEFAULT, PETSC_DEFAULT, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
   AMT_PETSC(SNESSetFromOptions(snes_));
+  keep_supports(snes_, problem);
   sufficient_decrease_ = decrease_asked_for(snes_);
   chosen_search_ = chosen_line_search(snes_);
   if (PreconditionerLag::applies_to(snes_)) lag_.emplace();
   tangent_solver_ = new_tangent_solver(problem, snes_);
-  if (problem.layout().num_extra() == 0) AMT_PETSC(MatSetNearNullSpace(matrix_, rigid_body_modes(problem.layout())));
+  if (problem.layout().num_extra() == 0)
+    AMT_PETSC(MatSetNearNullSpace(matrix_, modes_beside_supports(problem, rigid_body_modes(problem.layout()))));
 }
 
 void Newton::set_steps(const StepLength& steps) {
@@ -365,6 +371,7 @@ bool Newton::solve_linear(Vec load, Vec result) {
   AMT_PETSC(SNESGetKSP(snes_, &solver));
   AMT_PETSC(KSPSetOperators(solver, matrix_, matrix_));
   AMT_PETSC(KSPSolve(solver, load, result));
+  clear_prescribed(problem_, result);
   AMT_PETSC(KSPGetConvergedReason(solver, &reason));
   return reason > 0;
 }
