@@ -14,6 +14,7 @@ import numpy as np
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "scripts"))
+import course_analysis  # noqa: E402
 import deck_edit  # noqa: E402
 import expressions  # noqa: E402
 import performance_model  # noqa: E402
@@ -116,6 +117,30 @@ class PerformanceModel(unittest.TestCase):
         hops = performance_model.Network(latency=0.0, bandwidth=math.inf, hop=1.0)
         few, many = (performance_model.communication(1e6, ranks, counts, hops)["reductions"] for ranks in (4, 64))
         self.assertAlmostEqual(many / few, 3.0, 9)
+
+
+class Courses(unittest.TestCase):
+    def test_order_is_found_above_rounding(self):
+        quadratic = [1e3, 1e2, 1e0, 1e-4, 1e-12, 1e-12]
+        linear = [1e3 * 0.1**k for k in range(16)]
+        self.assertAlmostEqual(course_analysis.tails([quadratic])[0], 2.0)
+        self.assertAlmostEqual(course_analysis.tails([linear])[0], 1.0)
+        self.assertAlmostEqual(course_analysis.tails([quadratic])[1], 1e-4)
+        self.assertTrue(np.isnan(course_analysis.tails([[1.0, 1e-9]])[0]))
+
+    def test_distance_of_histories(self):
+        one = {"time": np.array([0.0, 1.0]), "reaction_a_x": np.array([0.0, 4.0]), "reaction_a_y": np.array([0.0, 1e-3]),
+               "newton": np.array([3.0, 3.0])}
+        other = {**one, "reaction_a_y": np.array([0.0, 2e-3]), "newton": np.array([3.0, 5.0])}
+        self.assertAlmostEqual(course_analysis.apart(one, other), 1e-3 / 4)
+        finer = {"time": np.array([0.0, 0.5, 1.0]), **{name: np.array([0.0, 2.0, 4.0]) * column[1] / 4
+                                                       for name, column in one.items() if name != "time"}}
+        self.assertAlmostEqual(course_analysis.apart(one, finer), 0.0)
+
+    def test_work_that_is_missing(self):
+        history = {"energy_external_work": np.array([1.0, 2.0]), "energy_stored": np.array([0.5, 1.0]),
+                   "energy_dissipated": np.array([0.5, 0.9])}
+        self.assertAlmostEqual(course_analysis.unbalanced(history), 0.05)
 
 
 class Extrapolation(unittest.TestCase):
