@@ -296,6 +296,8 @@ void ContactPoints::order_by_master() {
 }
 
 /// Takes the points without a master out of the multiplier basis of nodes that have a master in part of their support.
+/// By areas of the reference configuration, for the basis must follow from who has a master alone: an iterate that has
+/// gone over the axis of revolution has negative areas, and it would stay as that iterate left it until this changes.
 void ContactPoints::average_over_master() {
   if (num_values_ == 0) num_values_ = values_.size();
   values_.resize(num_values_);
@@ -311,8 +313,8 @@ void ContactPoints::average_over_master() {
     const auto shape = multiplier_shape(point);
     for (std::size_t a = 0; a < shape.size(); ++a) {
       const auto at = position[slave_->facet(point.facet)[a]];
-      all[0][at] += point.weight * shape[a];
-      if (point.master != ContactPoint::none) covered[0][at] += point.weight * shape[a];
+      all[0][at] += point.reference_weight * shape[a];
+      if (point.master != ContactPoint::none) covered[0][at] += point.reference_weight * shape[a];
     }
   }
   for (auto* part : {&covered, &all}) { // sums over the ranks that share a node

@@ -238,6 +238,26 @@ TEST_CASE("finite kinematics: a rigid motion of everything turns forces and does
           }
 }
 
+TEST_CASE("finite kinematics: an iterate that goes over the axis of revolution leaves nothing behind") {
+  Fixture fixture({.enforcement = Semismooth{0}, .space = Space::Axisymmetric});
+  const auto residual_at = [&](double along, double up) {
+    fixture.set(fixture.u, [=](const Vector3d& X, bool upper) {
+      return Vector3d(X + (upper ? Vector3d(along, up, 0.0) : Vector3d::Zero()));
+    });
+    auto residual = fixture.layout->new_vector();
+    fixture.problem->residual(fixture.u, residual);
+    return residual;
+  };
+  fixture.problem->begin_increment(1.0, fixture.u);
+  const auto before = residual_at(0.0, 1.0); // out of reach of the master
+  residual_at(0.0, -0.02);                   // in contact
+  residual_at(-3.0, 1.0);                    // out of reach, at negative radii
+  const auto after = residual_at(0.0, 1.0);
+  CHECK(norm(before) > 1e-3); // unknown multipliers
+  VecAXPY(after, -1.0, before);
+  CHECK(norm(after) <= 1e-14 * norm(before));
+}
+
 TEST_CASE("finite kinematics: flat on flat, sliding over facets and off the end, against closed forms") {
   constexpr double mu = 0.3, depth = 0.02;
   for (const int dim : {2, 3})
