@@ -43,6 +43,7 @@ IncrementSolver::IncrementSolver(Scene& scene, std::function<bool()> interrupted
                                  std::function<void(const std::string&)> tell)
     : scene_(scene), tell_(std::move(tell)), unknowns_(scene.layout->new_vector()),
       accepted_(scene.layout->new_vector()) {
+  forget_default_options(); // of a mesh before this one
   if (scene.bounds) {
     linear_solver_ = choose_bounded_solver(*scene.problem);
     bounded_ = std::make_unique<BoundedNewton>(*scene.problem, *scene.bounds, std::move(interrupted));

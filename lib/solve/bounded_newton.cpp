@@ -60,7 +60,8 @@ BoundedNewton::BoundedNewton(Problem& problem, BoundedUnknowns& bounds, std::fun
   PetscBool is_factorization = PETSC_FALSE;
   AMT_PETSC(SNESGetKSP(snes_, &ksp));
   AMT_PETSC(KSPGetPC(ksp, &pc));
-  AMT_PETSC(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &is_factorization, PCLU, PCCHOLESKY, ""));
+  AMT_PETSC(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &is_factorization, PCLU, PCCHOLESKY,
+                                      PCREDUNDANT, ""));
   if (!is_factorization && !is_semismooth()) preconditioner_ = std::make_unique<WholePreconditioner>(snes_);
 }
 

@@ -16,6 +16,10 @@ namespace {
 /// Unknowns above which a displacement-only problem goes to CG with multigrid rather than to a factorization.
 constexpr PetscInt multigrid_from_2d = 1'000'000;
 constexpr PetscInt multigrid_from_3d = 500'000;
+/// Unknowns up to which every rank factorizes the whole matrix by itself. MUMPS on several ranks adds what other ranks
+/// send in the order of its arrival, so that runs do not repeat bit by bit; so small factorizations gain nothing from
+/// more ranks.
+constexpr PetscInt repeatable_up_to = 20'000;
 
 /// Another formulation that may get there: multipliers updated one by one where they are unknowns, unknown ones
 /// elsewhere.
@@ -113,6 +117,21 @@ bool is_aggregation() {
   return std::string(type.data()) == PCGAMG;
 }
 
+/// Names of options that are defaults of ours. PETSc's options are one table a process, and so is this.
+std::vector<std::string>& defaults_set() {
+  static std::vector<std::string> names;
+  return names;
+}
+
+/// Does the user set options of MUMPS, or choose its solver? Then it is taken as it is.
+bool is_tuned() {
+  char* all = nullptr;
+  AMT_PETSC(PetscOptionsGetAll(nullptr, &all));
+  const std::string options = all ? all : "";
+  AMT_PETSC(PetscFree(all));
+  return options.find("-pc_") != std::string::npos || options.find("-mat_mumps_") != std::string::npos;
+}
+
 } // namespace
 
 void SolveOutcome::add_effort(const SolveOutcome& other) {
@@ -130,7 +149,15 @@ void smooth_by_factors() {
 void default_option(const std::string& name, const std::string& value) {
   PetscBool present = PETSC_FALSE;
   AMT_PETSC(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &present));
-  if (!present) AMT_PETSC(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
+  if (present) return;
+  AMT_PETSC(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
+  defaults_set().push_back(name);
+}
+
+void forget_default_options() {
+  for (const auto& name : defaults_set())
+    AMT_PETSC(PetscOptionsClearValue(nullptr, name.c_str()));
+  defaults_set().clear();
 }
 
 std::string choose_linear_solver(const Problem& problem) {
@@ -152,12 +179,20 @@ std::string choose_linear_solver(const Problem& problem) {
     return symmetric ? "conjugate gradients with smoothed-aggregation multigrid"
                      : "GMRES with smoothed-aggregation multigrid";
   }
+  int ranks = 1;
+  MPI_Comm_size(problem.comm(), &ranks);
+  const bool on_each = ranks > 1 && layout.num_global() <= repeatable_up_to && !is_tuned();
+  const std::string prefix = on_each ? "-redundant_" : "-";
+  if (on_each) default_option("-pc_type", PCREDUNDANT);
   default_option("-ksp_type", "preonly");
-  default_option("-pc_type", symmetric ? "cholesky" : "lu");
-  default_option("-pc_factor_mat_solver_type", "mumps");
-  default_option("-mat_mumps_icntl_7", "3");   // SCOTCH; MUMPS falls back by itself where it was built without
-  default_option("-mat_mumps_icntl_14", "40"); // spare workspace for delayed pivots of the saddle point, per cent
-  return symmetric ? "MUMPS, symmetric factorization" : "MUMPS, unsymmetric factorization";
+  default_option(prefix + "pc_type", symmetric ? "cholesky" : "lu");
+  default_option(prefix + "pc_factor_mat_solver_type", "mumps");
+  // SCOTCH; MUMPS falls back by itself where it was built without. Spare workspace for delayed pivots of the saddle
+  // point, per cent.
+  default_option(prefix + "mat_mumps_icntl_7", "3");
+  default_option(prefix + "mat_mumps_icntl_14", "40");
+  return std::string("MUMPS, ") + (symmetric ? "symmetric" : "unsymmetric") + " factorization" +
+         (on_each ? " on each rank" : "");
 }
 
 NullSpaceHandle rigid_body_modes(const DofLayout& layout) {

@@ -21,6 +21,10 @@ class TangentSolver;
 /// Sets a PETSc option unless the user has set it already.
 void default_option(const std::string& name, const std::string& value);
 
+/// Takes back what default_option() has set, so that the next problem of this process (a finer mesh) gets a choice of
+/// its own.
+void forget_default_options();
+
 /// Incomplete Cholesky as multigrid's smoother (under Chebyshev's iteration) instead of the diagonal, unless the user
 /// has chosen: what cells that are much longer than high couple strongly, it nearly solves for. A fifth of the
 /// iterations on graded meshes of contact (README.md), and no dearer on even ones. In the order of the matrix: reversed

@@ -29,7 +29,7 @@ bool PreconditionerLag::applies_to(SNES snes) {
   AMT_PETSC(SNESGetKSP(snes, &ksp));
   AMT_PETSC(KSPGetPC(ksp, &pc));
   AMT_PETSC(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &is_preonly));
-  AMT_PETSC(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &is_factorization, PCLU, PCCHOLESKY, ""));
+  AMT_PETSC(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &is_factorization, PCLU, PCCHOLESKY, PCREDUNDANT, ""));
   return !is_preonly && !is_factorization;
 }
 

@@ -2,8 +2,8 @@
 """A run made twice has the same bits: repeated.py --program PATH [CASE...].
 
 The whole history and every array of fields.h5 and checkpoint.h5 of two runs of the same deck on the same number of ranks:
-with friction, in each formulation, with factorizations, kept ones and multigrid, with remedies at work. On several ranks
-without MUMPS's own parallelism, which adds contributions in the order of their arrival (README.md): factors on each rank.
+with friction, in each formulation, with factorizations, kept ones and multigrid, with remedies at work. (On several ranks
+scenes of this size are factorized on each rank, for MUMPS adds contributions in the order of their arrival: README.md.)
 """
 from pathlib import Path
 
@@ -14,12 +14,11 @@ from run import ENFORCE, start
 from scenes import SCENES
 
 MULTIGRID = ["-ksp_type", "gmres", "-pc_type", "gamg"]
-ON_EACH_RANK = ["-pc_type", "redundant", "-redundant_pc_type", "lu", "-redundant_pc_factor_mat_solver_type", "mumps"]
 # Case: scene, `enforce`, ranks, PETSc options.
 CASES = {
-    "friction": ("wedge_two_solutions", ENFORCE["semismooth"], 2, ON_EACH_RANK),
+    "friction": ("wedge_two_solutions", ENFORCE["semismooth"], 2, []),
     "friction_one_rank": ("wedge_two_solutions", ENFORCE["semismooth"], 1, []),
-    "dual_basis": ("slide_mu_0.5", ENFORCE["dual"], 2, ON_EACH_RANK),
+    "dual_basis": ("slide_mu_0.5", ENFORCE["dual"], 2, []),
     "uzawa_by_multigrid": ("solid_slide", ENFORCE["uzawa"], 2, MULTIGRID),
     "kept_factorizations": ("solid_slide", ENFORCE["semismooth"], 1, ["-pc_type", "shell"]),
     "bounds_by_multigrid": ("solid_stack", ENFORCE["vi"], 2, ["-ksp_type", "cg", "-pc_type", "gamg"]),

@@ -83,6 +83,24 @@ struct PointwiseProblem {
 
 // PETSc compares the last step that it noted with stol |u| when a line search gives up: after a solve that ended with a
 // short step everything would count as converged.
+TEST_CASE("defaults of a solver are taken back, what the user has set is not") {
+  const OptionScope scope;
+  const auto is_set = [](const char* name) {
+    PetscBool present = PETSC_FALSE;
+    PetscOptionsHasName(nullptr, nullptr, name, &present);
+    return present == PETSC_TRUE;
+  };
+  forget_default_options();
+  PetscOptionsSetValue(nullptr, "-snes_rtol", "1e-7");
+  {
+    const PointwiseProblem any([](double u) { return u; }, [](double) { return 1.0; }, 0.0);
+    CHECK(is_set("-pc_type"));
+    forget_default_options();
+    CHECK(!is_set("-pc_type"));
+  }
+  CHECK(is_set("-snes_rtol"));
+}
+
 TEST_CASE("a residual whose minimum is not zero is not taken for solved") {
   double floor = -0.25; // roots at 1 ± floor for floor <= 0, none above
   PointwiseProblem valley([&](double u) { return floor + std::abs(u - 1.0); },
