@@ -1,5 +1,6 @@
 // Newton's method on forms of its own: what counts as convergence.
 #include "solve/newton.hpp"
+#include "solver_support.hpp"
 #include "two_blocks.hpp"
 
 #include <cmath>
