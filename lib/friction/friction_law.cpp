@@ -1,6 +1,6 @@
 #include "friction/friction_law.hpp"
 
-#include "deck/rule.hpp"
+#include "deck/shared_rule.hpp"
 
 namespace amontons {
 
@@ -65,7 +65,7 @@ Rule<FrictionLaw> friction_law_rule() {
            "A. Ruina, J. Geophys. Res. 88 (1983) 10359-10370; J. R. Rice, Y. Ben-Zion, PNAS 93 (1996) 3811-3818.")
       .tag("prakash_clifton", prakash_clifton_rule(), "Follows a change of pressure only with slip.",
            "A. Cochard, J. R. Rice, J. Geophys. Res. 105 (2000) 25891-25907.");
-  return rule;
+  return shared(Rule<FrictionLaw>(rule));
 }
 
 } // namespace amontons

@@ -1,6 +1,7 @@
 #include "material/bulk_material.hpp"
 
 #include "base/error.hpp"
+#include "deck/shared_rule.hpp"
 #include "material/elastic_rule.hpp"
 
 namespace amontons {
@@ -37,10 +38,10 @@ FiniteLaw finite_law(const BulkMaterial& material) { return std::visit(FiniteLaw
 double initial_stiffness(const BulkMaterial& material) { return young(initial_lame(finite_law(material))); }
 
 Rule<BulkMaterial> bulk_material_rule() {
-  return TaggedRule<BulkMaterial>()
-      .tag("elastic", elastic_rule<Elastic>(std::identity()),
+  TaggedRule<BulkMaterial> rule;
+  rule.tag("elastic", elastic_rule<Elastic>(std::identity()),
            "Linear isotropic elasticity; in finite kinematics in logarithmic strain (Hencky).")
-      .tag("elastic_plastic", elastic_plastic_rule(), "Elastoplasticity after von Mises (J2).",
+      .tag("elastic_plastic", shared(elastic_plastic_rule()), "Elastoplasticity after von Mises (J2).",
            "J. C. Simo, T. J. R. Hughes, Computational Inelasticity (1998).")
       .tag("st_venant_kirchhoff", st_venant_kirchhoff_rule(),
            "Linear between Green's strain and its stress: large rotations, small strains.")
@@ -48,6 +49,7 @@ Rule<BulkMaterial> bulk_material_rule() {
            "J. C. Simo, K. S. Pister, Comput. Methods Appl. Mech. Eng. 46 (1984) 201-215.")
       .tag("mooney_rivlin", mooney_rivlin_rule(), "Mooney-Rivlin rubber, slightly compressible.",
            "R. S. Rivlin, Phil. Trans. R. Soc. A 241 (1948) 379-397.");
+  return shared(Rule<BulkMaterial>(rule));
 }
 
 } // namespace amontons

@@ -1,6 +1,6 @@
 #include "material/hardening.hpp"
 
-#include "deck/rule.hpp"
+#include "deck/shared_rule.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -110,11 +110,12 @@ double hardening_work(const Hardening& hardening, double from, double to) {
 
 Rule<Hardening> hardening_rule() {
   return TaggedRule<Hardening>()
-      .tag("linear", linear_rule(), "Straight line, or perfect plasticity.")
-      .tag("swift", swift_rule(), "Power law K (eps_0 + p)^n.", "H. W. Swift, J. Mech. Phys. Solids 1 (1952) 1-18.")
-      .tag("voce", voce_rule(), "Exponential saturation, with a linear term if wanted.",
+      .tag("linear", shared(linear_rule()), "Straight line, or perfect plasticity.")
+      .tag("swift", shared(swift_rule()), "Power law K (eps_0 + p)^n.",
+           "H. W. Swift, J. Mech. Phys. Solids 1 (1952) 1-18.")
+      .tag("voce", shared(voce_rule()), "Exponential saturation, with a linear term if wanted.",
            "E. Voce, J. Inst. Met. 74 (1948) 537-562.")
-      .tag("table", table_rule(), "Straight lines between given points.");
+      .tag("table", shared(table_rule()), "Straight lines between given points.");
 }
 
 } // namespace amontons

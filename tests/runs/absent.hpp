@@ -3,6 +3,7 @@
 #pragma once
 
 // What is left without use by that is no mistake.
+#pragma GCC diagnostic ignored "-Wmisleading-indentation"
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 #pragma GCC diagnostic ignored "-Wunused-variable"
@@ -10,6 +11,7 @@
 #pragma GCC diagnostic ignored "-Wunused-const-variable"
 
 #include <cstddef>
+#include <variant>
 
 namespace amontons {
 
@@ -36,10 +38,10 @@ struct Absent {
   friend constexpr bool operator==(const Absent&, std::nullptr_t) { return true; }
 };
 
-/// Instead of a flag.
-struct Never {
-  constexpr operator bool() const { return false; }
-  constexpr Never& operator=(bool) { return *this; }
-};
+/// Instead of std::visit, where the first alternative is the only one.
+template <class Visitor, class Variant>
+auto visit_first(Visitor&& visitor, const Variant& variant) {
+  return visitor(*std::get_if<0>(&variant));
+}
 
 } // namespace amontons

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """An effect that is off is not there: instructions.py CASE --program PATH [--valgrind valgrind]
 
-Runs of patch_2d, counted by valgrind's callgrind (allocations; instructions in the program and in the libraries that
-compute: MPI and the threads of SCOTCH wait longer on a busy machine, and a longer text takes longer to parse) and by PETSc
-(objects).
+Runs of patch_2d, counted by valgrind's callgrind (allocations; instructions of the whole process, start-up of MPI and reading
+the deck included; and the 5 % of them that are in the program and in the libraries that compute, for which a difference
+of the rest is no cover) and by PETSc (objects).
 
 off: the deck with only what it must say against the same with every effect written down as off: equal unknowns and
 PETSc objects, instructions and allocations within a hundredth; and in neither has any function of any effect of the
