@@ -101,8 +101,8 @@ class ContactPoints {
   /// A master facet at ξ.
   SurfacePoint master_at(std::int32_t facet, std::span<const double> xi) const { return master_->at(facet, xi); }
   /// Where forces at a point act: in small kinematics at its reference place; in finite kinematics at its current
-  /// place, or at the projection where the slave takes the couple of shear over a gap (along the slave's normal, at edges
-  /// and corners of the master; point_tangent.cpp).
+  /// place, or at the projection where the slave takes the couple of shear over a gap (along the slave's normal, at
+  /// edges and corners of the master; point_tangent.cpp).
   std::array<double, 3> force_place(std::size_t i) const;
 
  private:
