@@ -38,6 +38,17 @@ bool any_pair(const Deck& deck, Holds&& holds) {
   return std::any_of(deck.contact.begin(), deck.contact.end(), holds);
 }
 
+/// What the deck prescribes now, at this rank's nodes.
+std::vector<SupportedComponent> supports_of(const Scene& scene) {
+  std::vector<SupportedComponent> supports;
+  const auto& mesh = scene.mesh;
+  for (const auto& condition : scene.problem->prescribed())
+    for (const auto node : mesh.node_groups.at(condition.group))
+      if (node < mesh.num_owned)
+        supports.push_back({node, condition.component, condition.value(scene.problem->time(), mesh.position(node))});
+  return supports;
+}
+
 /// What to change in the deck so that the item may pass; empty where there is no rule. Each is tried by
 /// tests/hard/advice.py on a scene that fails without it.
 std::string advice(const Certificate::Item& item, const Deck& deck) {
@@ -70,6 +81,7 @@ Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<Contac
                           Vec unknowns) {
   const auto pairs = pair_names(scene);
   const auto forces = ledger.nodal_external_forces(unknowns);
+  const auto supports = supports_of(scene);
   const auto& deck = scene.deck.certificate;
   const auto before = scene.problem->state_at(accepted).displacement;
   std::vector<double> increment(before.begin(), before.end());
@@ -89,6 +101,7 @@ Certificate certify_state(Scene& scene, Ledger& ledger, const std::vector<Contac
                   .pairs = pairs,
                   .samples = samples,
                   .external_forces = forces,
+                  .supports = supports,
                   .energy = {.stored = ledger.stored_energy(),
                              .dissipated = ledger.dissipated_energy(),
                              .external_work = ledger.external_work(),

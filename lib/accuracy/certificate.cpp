@@ -81,6 +81,7 @@ Certificate without_numbers(const CertificateTolerances& limits) {
   fail("slip", limits.slip);
   fail("dissipation", limits.friction);
   fail("artificial", limits.artificial);
+  fail("supports", limits.supports);
   return certificate;
 }
 
@@ -119,6 +120,7 @@ Certificate certify(const CertificateInput& input) {
   const Worst volume = accuracy::check_volume(input);
   const Worst overlap = accuracy::check_overlap(input);
   const accuracy::FrictionChecks friction = accuracy::check_friction(input);
+  const Worst supports = accuracy::check_supports(input);
 
   const CertificateTolerances& limits = input.tolerances;
   Certificate certificate;
@@ -137,7 +139,8 @@ Certificate certify(const CertificateInput& input) {
       at_most("friction_cone", friction.cone, limits.friction),
       at_most("slip", friction.slip, limits.slip),
       at_most("dissipation", friction.dissipation, limits.friction),
-      artificial_item(input)};
+      artificial_item(input),
+      at_most("supports", supports, limits.supports)};
   return certificate;
 }
 

@@ -24,6 +24,7 @@ struct CertificateTolerances {
   double friction = 1e-6;        // shear off the law's limit, and negative frictional work, relative (see certify)
   double slip = 0.1;             // tangential motion that is not the slip claimed / largest motion (see certify)
   double artificial = 0.05;      // work taken by artificial forces / energy scale
+  double supports = 1e-12;       // displacement of a support off the prescribed one / largest displacement
 };
 
 /// Energies over all ranks, the same on every rank. All cumulative since the start of the run.
@@ -59,6 +60,13 @@ struct EnergyLedger {
   double virtual_work_scale = 0.0;
 };
 
+/// A displacement component of a local node that is prescribed now.
+struct SupportedComponent {
+  std::int32_t node;
+  int component;
+  double displacement; // length
+};
+
 /// What is certified. Views the caller's data.
 struct CertificateInput {
   const Mesh& mesh;
@@ -71,6 +79,8 @@ struct CertificateInput {
   /// count). The out-of-balance force of a node that is not supported does not belong here: it is what the balance is
   /// to find.
   std::span<const double> external_forces;
+  /// Of this rank, from the deck and not from the solver.
+  std::span<const SupportedComponent> supports;
   EnergyLedger energy;
   CertificateTolerances tolerances;
   /// Forces and energies below these are rounding (an unloaded scene has nothing else): lower limits of the scales.
@@ -89,8 +99,8 @@ struct Certificate {
     std::string where; // the worst place, in words; may be empty
   };
   /// penetration, tension, complementarity, left_master, force_balance, moment_balance, body_balance, virtual_work,
-  /// energy, volume_ratio, missed_contact, friction_cone, slip, dissipation, artificial: always all of them, in this
-  /// order.
+  /// energy, volume_ratio, missed_contact, friction_cone, slip, dissipation, artificial, supports: always all of them,
+  /// in this order.
   std::vector<Item> items;
   bool passed() const;
 };

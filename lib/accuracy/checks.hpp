@@ -41,6 +41,10 @@ BalanceChecks check_balance(const CertificateInput& input, const std::array<doub
 /// Minus the smallest volume ratio. Collective.
 Worst check_volume(const CertificateInput& input);
 
+/// Largest distance of a supported component from where its support puts it, relative to the largest displacement of
+/// the scene. Collective.
+Worst check_supports(const CertificateInput& input);
+
 /// Deepest node of a body inside another body or a rigid shape in the current configuration, relative to the facet
 /// size. Collective.
 Worst check_overlap(const CertificateInput& input);

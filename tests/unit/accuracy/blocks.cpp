@@ -161,6 +161,7 @@ Certificate Case::certify() const {
                             .pairs = pairs,
                             .samples = samples,
                             .external_forces = external,
+                            .supports = supports,
                             .energy = energy,
                             .tolerances = {},
                             .force_floor = force_floor,

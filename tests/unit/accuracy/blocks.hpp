@@ -27,6 +27,7 @@ struct Case {
   std::vector<double> displacement, external; // the displacement comes in one increment
   std::vector<ContactPairNames> pairs;
   std::vector<ContactSamples> samples;
+  std::vector<SupportedComponent> supports;
   EnergyLedger energy;
   double force_floor = 0.0;
   Kinematics kinematics = Kinematics::Small;

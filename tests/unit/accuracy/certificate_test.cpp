@@ -36,7 +36,7 @@ void move_nodes(Case& scene, const std::array<double, 3>& place, int body, const
 TEST_CASE("certify: the exact solution passes with values at rounding") {
   for (const int dim : {2, 3}) {
     const Certificate certificate = compressed_blocks(MPI_COMM_WORLD, dim).certify();
-    CHECK(certificate.items.size() == 15);
+    CHECK(certificate.items.size() == 16);
     CHECK(certificate.passed());
     CHECK(failures(certificate).empty());
     for (const auto& one : certificate.items) {
@@ -161,6 +161,23 @@ TEST_CASE("certify: energy outside of its bounds and virtual work out of balance
   scene.energy.virtual_work_defect = std::numeric_limits<double>::quiet_NaN();
   scene.energy.stored = std::numeric_limits<double>::quiet_NaN();
   CHECK(failures(scene.certify()) == Names{"virtual_work", "energy"});
+}
+
+TEST_CASE("certify: a support that is not where it is put") {
+  for (const int dim : {2, 3}) {
+    CAPTURE(dim);
+    Case scene = compressed_blocks(MPI_COMM_WORLD, dim); // the largest displacement is 0.02, of the top
+    for (std::int32_t node = 0; node < scene.mesh.num_owned; ++node)
+      for (int c = 0; c < dim && scene.mesh.position(node)[dim - 1] > 1.99; ++c)
+        scene.supports.push_back({node, c, c == dim - 1 ? -0.02 : 0.0});
+    CHECK(item(scene.certify(), "supports").value < 1e-15);
+    for (auto& support : scene.supports)
+      if (support.component == 0 && scene.mesh.position(support.node)[0] > 0.99) support.displacement = 2e-6;
+    const Certificate certificate = scene.certify();
+    CHECK(item(certificate, "supports").value == doctest::Approx(1e-4).epsilon(1e-9));
+    CHECK(item(certificate, "supports").where.find("displacement along x at (1") != std::string::npos);
+    CHECK(failures(certificate) == Names{"supports"});
+  }
 }
 
 TEST_CASE("certify: a cell turned inside out") {
