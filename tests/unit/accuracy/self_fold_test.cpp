@@ -22,6 +22,7 @@ Case folded(int dim, const Fold& fold) {
              .external = {},
              .pairs = {},
              .samples = {},
+             .supports = {},
              .energy = {}};
   scene.space = dim == 2 ? Space::PlaneStrain : Space::Solid;
   scene.kinematics = Kinematics::Finite;
