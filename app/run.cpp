@@ -107,7 +107,7 @@ Run::Run(MPI_Comm comm, const RunArguments& arguments, const Deck& deck, Adaptat
       all_started_(adaptation ? adaptation->started() : started_), log_(comm) {
   scene_ = build_scene(comm, deck, adaptation ? adaptation->meshing() : FreeMeshing{});
   for (const auto& [name, value] : scene_->deck.petsc)
-    default_option("-" + name, value);
+    set_if_absent("-" + name, value);
   directory_ = arguments.out.value_or(scene_->deck.output.directory);
   ledger_ = std::make_unique<Ledger>(*scene_);
   solver_ = std::make_unique<IncrementSolver>(

@@ -146,12 +146,15 @@ void smooth_by_factors() {
   default_option("-mg_levels_sub_pc_type", PCICC);
 }
 
-void default_option(const std::string& name, const std::string& value) {
+bool set_if_absent(const std::string& name, const std::string& value) {
   PetscBool present = PETSC_FALSE;
   AMT_PETSC(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &present));
-  if (present) return;
-  AMT_PETSC(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
-  defaults_set().push_back(name);
+  if (!present) AMT_PETSC(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
+  return !present;
+}
+
+void default_option(const std::string& name, const std::string& value) {
+  if (set_if_absent(name, value)) defaults_set().push_back(name);
 }
 
 void forget_default_options() {

@@ -18,7 +18,10 @@ namespace amontons {
 
 class TangentSolver;
 
-/// Sets a PETSc option unless the user has set it already.
+/// Sets a PETSc option unless it is set already; tells whether it has.
+bool set_if_absent(const std::string& name, const std::string& value);
+
+/// The same for a choice of the program's, not of the user's.
 void default_option(const std::string& name, const std::string& value);
 
 /// Takes back what default_option() has set, so that the next problem of this process (a finer mesh) gets a choice of
