@@ -90,6 +90,10 @@ CUTS = {
         (tag("segment"),
          ("lib/contact/contact_points.cpp", r"\n *if \(const auto\* segment = [^\n]*\n *place_by_segments[^\n]*\n *else", ""),
          function("lib/contact/contact_points.cpp", r"void ContactPoints::place_by_segments"))),
+    "smoothing": Cut(
+        r"SmoothMaster::|BezierFacet",
+        ("lib/contact/smooth_master.cpp", "lib/geometry/bezier_facet.cpp"),
+        (key("smoothing"), absent("lib/contact/master_surface.hpp", "optional", "SmoothMaster", "smooth_"))),
     "path error and path control": Cut(
         r"PathRecord::|PathControl::|solve_halves",
         ("app/path_record.cpp", "lib/solve/path_control.cpp"),
