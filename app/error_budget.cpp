@@ -82,7 +82,7 @@ UnsolvedPart estimate_unsolved_part(Scene& scene, IncrementSolver& solver) {
   const double begun = now();
   const VecHandle residual = scene.layout->new_vector(), correction = scene.layout->new_vector();
   const bool is_solved =
-      scene.problem->residual(solver.accepted(), residual) && solver.solve_linearized(residual, correction);
+      scene.problem->residual(solver.accepted(), residual) && solver.solve_linearized(residual, 1e-1, correction);
   const double all = scene.internal_work(solver.accepted());
   if (is_solved && all > 0.0) {
     PetscScalar work = 0.0;

@@ -154,7 +154,9 @@ bool add_influence(Scene& scene, IncrementSolver& solver, Vec lift, Vec forces, 
                    FigureInfluences& found) {
   const VecHandle response = scene.layout->new_vector();
   take_prescribed_out(scene, forces);
-  if (!solver.solve_linearized(forces, response)) return false;
+  // A residual of 1e-3 leaves the error of a force, a sum that nearly cancels, off by two thirds (hertz_3d with 106,000
+  // unknowns), of 1e-4 by 1 %.
+  if (!solver.solve_linearized(forces, 1e-4, response)) return false;
   if (lift) AMT_PETSC(VecAYPX(response, -1.0, lift));
   const auto field = scene.problem->state_at(response).displacement;
   figure.influence.assign(field.begin(), field.end());

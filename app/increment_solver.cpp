@@ -98,8 +98,8 @@ SolveOutcome IncrementSolver::solve(double target) {
   return ladder_->climb(unknowns_, outcome, *trouble_);
 }
 
-bool IncrementSolver::solve_linearized(Vec load, Vec result) {
-  return newton_ && newton_->solve_linearized(accepted_, load, result);
+bool IncrementSolver::solve_linearized(Vec load, double accuracy, Vec result) {
+  return newton_ && newton_->solve_linearized(accepted_, load, accuracy, result);
 }
 
 SolveOutcome IncrementSolver::solve_from(const OtherStart& from, double target) {

@@ -50,7 +50,7 @@ class IncrementSolver {
   std::vector<Ladder::Use> remedy_uses() const { return ladder_ ? ladder_->uses() : std::vector<Ladder::Use>{}; }
   /// Newton::solve_linearized at the last accepted state; false also where the pairs' formulation has no such system
   /// at hand (bounds, eliminated multipliers). Collective.
-  bool solve_linearized(Vec load, Vec result);
+  bool solve_linearized(Vec load, double accuracy, Vec result);
   /// Accepts the unknowns, or goes back to the last accepted ones. Collective.
   void commit();
   void roll_back();

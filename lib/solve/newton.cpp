@@ -110,6 +110,31 @@ class EnergySearch {
   Vec start_ = nullptr, force_ = nullptr, step_ = nullptr, next_ = nullptr, next_force_ = nullptr;
 };
 
+/// Krylov methods solve to this residual, relative to the load, for the life of the scope. Eisenstat and Walker's rule
+/// rests: it would set the tolerance of every solve, also of those that are none of Newton's method.
+class KrylovAccuracy {
+ public:
+  KrylovAccuracy(SNES snes, double residual) : snes_(snes) {
+    AMT_PETSC(SNESGetKSP(snes, &solver_));
+    AMT_PETSC(SNESKSPGetUseEW(snes, &has_rule_));
+    AMT_PETSC(SNESKSPSetUseEW(snes, PETSC_FALSE));
+    AMT_PETSC(KSPGetTolerances(solver_, &relative_, &absolute_, nullptr, nullptr));
+    AMT_PETSC(KSPSetTolerances(solver_, residual, 0.0, PETSC_DEFAULT, PETSC_DEFAULT));
+  }
+  ~KrylovAccuracy() {
+    KSPSetTolerances(solver_, relative_, absolute_, PETSC_DEFAULT, PETSC_DEFAULT);
+    SNESKSPSetUseEW(snes_, has_rule_);
+  }
+  KrylovAccuracy(const KrylovAccuracy&) = delete;
+  KrylovAccuracy& operator=(const KrylovAccuracy&) = delete;
+
+ private:
+  SNES snes_ = nullptr;
+  KSP solver_ = nullptr;
+  PetscBool has_rule_ = PETSC_FALSE;
+  PetscReal relative_ = 0.0, absolute_ = 0.0;
+};
+
 /// Whether multigrid by smoothed aggregation was chosen, here or by the user.
 bool is_aggregation() {
   std::array<char, 64> type{};
@@ -440,7 +465,7 @@ void Newton::predict(Vec unknowns) {
   problem_.end_prediction(unknowns, step);
 }
 
-bool Newton::solve_linearized(Vec unknowns, Vec load, Vec result) {
+bool Newton::solve_linearized(Vec unknowns, Vec load, double accuracy, Vec result) {
   const Phase phase("linear solver");
   const bool is_new = problem_.tangent(unknowns, matrix_);
   if (tangent_solver_) {
@@ -448,14 +473,15 @@ bool Newton::solve_linearized(Vec unknowns, Vec load, Vec result) {
     if (is_new) tangent_solver_->tangent_changed();
     tangent_solver_->want_accuracy();
   }
-  // Where a tolerance is one of forces, it is that of the scene: a load of their size is solved for as well as they
-  // are.
+  // Where a tolerance of factorizations is one of forces, it is that of the scene: a load of their size is solved for as
+  // well as they are.
   PetscReal norm = 0.0;
   AMT_PETSC(VecNorm(load, NORM_2, &norm));
   AMT_PETSC(VecSet(result, 0.0));
   if (norm == 0.0) return true;
   const double scale = problem_.force_scale() > 0.0 ? problem_.force_scale() / norm : 1.0;
   AMT_PETSC(VecScale(load, scale));
+  const KrylovAccuracy to_that(snes_, accuracy);
   const bool is_solved = solve_linear(load, result);
   AMT_PETSC(VecScale(load, 1.0 / scale));
   AMT_PETSC(VecScale(result, 1.0 / scale));

@@ -30,8 +30,7 @@ void forget_default_options();
 
 /// Incomplete Cholesky as multigrid's smoother (under Chebyshev's iteration) instead of the diagonal, unless the user
 /// has chosen: what cells that are much longer than high couple strongly, it nearly solves for. A fifth of the
-/// iterations on graded meshes of contact (README.md), and no dearer on even ones. In the order of the matrix: reversed
-/// Cuthill-McKee is worse on some.
+/// iterations on graded meshes of contact (README.md), and no dearer on even ones.
 void smooth_by_factors();
 
 /// Sets the defaults for a problem: direct (MUMPS, Cholesky where the tangent is symmetric, SCOTCH ordering) or, above
@@ -95,9 +94,9 @@ class Newton : public IncrementNewton {
   void set_steps(const StepLength& steps) override;
   double imbalance(Vec unknowns) override;
   /// Displacements under `load` (zero in prescribed equations) in the problem linearised at `unknowns`; for problems
-  /// with a symmetric tangent. A back-substitution where a factorization is at hand. False if the linear solver
-  /// failed. Collective.
-  bool solve_linearized(Vec unknowns, Vec load, Vec result);
+  /// with a symmetric tangent. A back-substitution where a factorization is at hand; else `accuracy` is the residual
+  /// over the load to which it is solved. False if the linear solver failed. Collective.
+  bool solve_linearized(Vec unknowns, Vec load, double accuracy, Vec result);
   /// What went on in the last solve, which did not converge. Collective.
   Trouble trouble() const;
   std::vector<Switching*> switching() const override { return problem_.switching(); }

@@ -46,6 +46,8 @@ std::string choose_newton_solver(const Problem& problem) {
   const PetscInt size = layout.num_global();
   const bool is_free = option("-pc_type").empty() && option("-ksp_type").empty();
   auto words = choose_linear_solver(problem);
+  // Not for the matrices of bounds, which bounded_newton chooses for: README.md.
+  default_option("-mg_levels_sub_pc_factor_mat_ordering_type", MATORDERINGRCM);
   const bool is_direct = option("-pc_type") == PCCHOLESKY || option("-pc_type") == PCLU;
   const bool is_2d = layout.dim() == 2;
   const bool is_displacement_only = layout.num_extra() == 0;

@@ -46,6 +46,7 @@ for scene, case in vi_cases.UNLOAD.items():
 for scene, cases in condensed_cases.SCENES.items():
     CASES[scene].update(cases)
 CASES["hertz_3d"]["multigrid"] = vi_cases.multigrid_on_graded_cells
+CASES["hertz_3d"]["estimates"] = vi_cases.estimates_by_multigrid
 
 
 def main():
