@@ -119,12 +119,13 @@ PointRows point_places(const Mesh& mesh, const PointBatch& batch, std::int32_t c
   if (batch.table->rule->size() > most_points) throw std::logic_error("a quadrature has more points than most_points");
   const auto nodes = batch.block->cell(batch.first_cell + c);
   PointRows places = PointRows::Zero(batch.table->rule->size(), mesh.dim);
-  for (std::size_t a = 0; a < nodes.size(); ++a) {
-    const auto node = mesh.position(nodes[a]);
-    for (int q = 0; q < places.rows(); ++q)
+  const double* value = batch.table->values.data();
+  for (int q = 0; q < places.rows(); ++q)
+    for (const auto node : nodes) {
+      const double weight = *value++;
       for (int i = 0; i < mesh.dim; ++i)
-        places(q, i) += batch.table->value(q)[a] * node[i];
-  }
+        places(q, i) += weight * mesh.coordinates[std::size_t(node) * mesh.dim + i];
+    }
   return places;
 }
 
@@ -190,7 +191,8 @@ void PatchRecovery::add_cells(const PointBatch& batch) {
     for (int a = 0; a < num_vertices(batch.block->type); ++a) {
       for (Eigen::Index s = 0; s < samples.rows(); ++s) {
         const auto t = terms_at<Sizes>(&places(s, 0), mesh_.position(nodes[a]));
-        const double* field = &fields(s, 0);
+        std::array<double, Sizes::fields> field; // of its own, so that the compiler may add several at once
+        std::copy_n(&fields(s, 0), Sizes::fields, field.begin());
         double* sum = &sums_[patch(batch.block->body, nodes[a]) * stride_];
         for (int k = 0; k < Sizes::terms; ++k)
           for (int l = k; l < Sizes::terms; ++l)
@@ -279,20 +281,20 @@ PointRows PatchRecovery::blend(const CellBlock& block, std::int32_t c, const Poi
       share -= corners.col(a);
     }
   share /= trusted;
-  PointRows result = PointRows::Zero(places.rows(), Sizes::fields);
-  for (std::size_t a = 0; a < nodes.size(); ++a) {
-    const std::size_t number = patch(block.body, nodes[a]);
-    if (standing_[number] != best) continue;
-    for (Eigen::Index q = 0; q < places.rows(); ++q) {
+  PointRows result(places.rows(), Sizes::fields);
+  for (Eigen::Index q = 0; q < places.rows(); ++q) {
+    std::array<double, Sizes::fields> sum{}; // of its own, so that the compiler may add several fields at once
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const std::size_t number = patch(block.body, nodes[a]);
+      if (standing_[number] != best) continue;
       const auto t = terms_at<Sizes>(&places(q, 0), mesh_.position(nodes[a]));
       const double* coefficient = &coefficients_[number * Sizes::terms * Sizes::fields];
-      double* field = &result(q, 0);
-      for (int k = 0; k < Sizes::terms; ++k, coefficient += Sizes::fields) {
-        const double weight = (corners(q, a) + share[q]) * t[k];
+      const double share_of_node = corners(q, a) + share[q];
+      for (int k = 0; k < Sizes::terms; ++k, coefficient += Sizes::fields)
         for (int i = 0; i < Sizes::fields; ++i)
-          field[i] += weight * coefficient[i];
-      }
+          sum[i] += share_of_node * t[k] * coefficient[i];
     }
+    std::copy(sum.begin(), sum.end(), &result(q, 0));
   }
   return result;
 }
