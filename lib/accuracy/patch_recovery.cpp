@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -15,6 +16,32 @@ namespace {
 
 /// Smallest reciprocal condition of the (scaled) normal equations of a fit that is taken.
 constexpr double least_condition = 1e-6;
+
+/// Of a patch, as constants: loops over terms and fields are most of the work here.
+template <int dimension, int order>
+struct PatchSizes {
+  static constexpr int dim = dimension, terms = num_terms(dimension, order), fields = 2 * strain_size<dimension>;
+};
+
+/// Calls a function with the sizes of the patches of a mesh.
+template <class Function>
+auto with_sizes(const Mesh& mesh, const Function& function) {
+  if (mesh.dim == 2) return mesh.order == 1 ? function(PatchSizes<2, 1>{}) : function(PatchSizes<2, 2>{});
+  return mesh.order == 1 ? function(PatchSizes<3, 1>{}) : function(PatchSizes<3, 2>{});
+}
+
+/// The polynomial's terms at a place, by its distance from the node of the patch.
+template <class Sizes>
+std::array<double, Sizes::terms> terms_at(const double* place, std::span<const double> node) {
+  constexpr int dim = Sizes::dim;
+  std::array<double, Sizes::terms> result{1.0};
+  for (int i = 0; i < dim; ++i)
+    result[1 + i] = place[i] - node[i];
+  for (int i = 0, next = 1 + dim; i < dim && next < Sizes::terms; ++i)
+    for (int j = i; j < dim; ++j)
+      result[next++] = result[1 + i] * result[1 + j];
+  return result;
+}
 
 bool is_simplex(ElementType type) { return num_vertices(type) == element_dim(type) + 1; }
 
@@ -60,18 +87,45 @@ std::vector<NodeField> corners_of_bodies(const Mesh& mesh) {
   return result;
 }
 
-} // namespace
+/// Solves the normal equations of a patch, scaled to a unit diagonal so that the unit of length does not matter. False
+/// where they are (nearly) singular: then only the mean value is known.
+template <class Sizes>
+bool fit_patch(std::span<const double> sums, std::span<double> coefficients) {
+  using Square = Eigen::Matrix<double, Sizes::terms, Sizes::terms>;
+  using Rows = Eigen::Matrix<double, Sizes::terms, Sizes::fields, Eigen::RowMajor>;
+  Square normal;
+  std::size_t next = 0;
+  for (int k = 0; k < Sizes::terms; ++k)
+    for (int l = k; l < Sizes::terms; ++l)
+      normal(k, l) = normal(l, k) = sums[next++];
+  const Eigen::Map<const Rows> right(&sums[next]);
+  Eigen::Map<Rows> result(coefficients.data());
+  if (normal.diagonal().minCoeff() > 0.0) {
+    const Eigen::Vector<double, Sizes::terms> scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::LDLT<Square> factor(scale.asDiagonal() * normal * scale.asDiagonal());
+    if (factor.info() == Eigen::Success && factor.vectorD().minCoeff() > least_condition) {
+      result = scale.asDiagonal() * factor.solve(scale.asDiagonal() * right);
+      return true;
+    }
+  }
+  result.setZero();
+  if (normal(0, 0) > 0.0) result.row(0) = right.row(0) / normal(0, 0);
+  return false;
+}
 
-int num_terms(int dim, int order) { return order == 1 ? 1 + dim : 1 + dim + dim * (dim + 1) / 2; }
+} // namespace
 
 PointRows point_places(const Mesh& mesh, const PointBatch& batch, std::int32_t c) {
   if (batch.table->rule->size() > most_points) throw std::logic_error("a quadrature has more points than most_points");
   const auto nodes = batch.block->cell(batch.first_cell + c);
   PointRows places = PointRows::Zero(batch.table->rule->size(), mesh.dim);
+  const double* value = batch.table->values.data();
   for (int q = 0; q < places.rows(); ++q)
-    for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (const auto node : nodes) {
+      const double weight = *value++;
       for (int i = 0; i < mesh.dim; ++i)
-        places(q, i) += batch.table->value(q)[a] * mesh.position(nodes[a])[i];
+        places(q, i) += weight * mesh.coordinates[std::size_t(node) * mesh.dim + i];
+    }
   return places;
 }
 
@@ -93,11 +147,12 @@ void each_weighed_batch(SolidForm& solid, const State& state, const std::functio
 PointRows point_fields(const PointBatch& batch, std::int32_t c) {
   const int points = batch.table->rule->size();
   const auto components = static_cast<int>(batch.strain.size() / batch.weights.size());
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const std::size_t first = std::size_t(c) * points * components;
   PointRows fields(points, 2 * components);
-  fields << Eigen::Map<const Rows>(&batch.strain[first], points, components),
-      Eigen::Map<const Rows>(&batch.stress[first], points, components);
+  for (int q = 0; q < points; ++q) {
+    const std::size_t first = (std::size_t(c) * points + q) * components;
+    std::copy_n(&batch.strain[first], components, &fields(q, 0));
+    std::copy_n(&batch.stress[first], components, &fields(q, components));
+  }
   return fields;
 }
 
@@ -106,10 +161,12 @@ PatchRecovery::PatchRecovery(SolidForm& solid, const Mesh& mesh, const State& st
       fields_(2 * (mesh.dim == 2 ? strain_size<2> : strain_size<3>)),
       stride_(std::size_t(terms_) * (terms_ + 1) / 2 + std::size_t(terms_) * fields_ + 1) {
   number_patches();
-  each_weighed_batch(solid, state, [this](const PointBatch& batch) { add_cells(batch); });
-  add_boundary();
-  sum_over_ranks();
-  fit();
+  with_sizes(mesh, [&]<class Sizes>(Sizes) {
+    each_weighed_batch(solid, state, [this](const PointBatch& batch) { add_cells<Sizes>(batch); });
+    add_boundary();
+    sum_over_ranks();
+    fit<Sizes>();
+  });
 }
 
 void PatchRecovery::number_patches() {
@@ -123,28 +180,8 @@ void PatchRecovery::number_patches() {
   sums_.assign(count * stride_, 0.0);
 }
 
-/// Of a place from a node; the third component is zero in the plane.
-Eigen::Vector3d PatchRecovery::distance(const PointRows& places, Eigen::Index row, std::int32_t node) const {
-  Eigen::Vector3d result = Eigen::Vector3d::Zero();
-  for (int i = 0; i < mesh_.dim; ++i)
-    result[i] = places(row, i) - mesh_.position(node)[i];
-  return result;
-}
-
-/// The polynomial's terms at a distance from the node of the patch.
-TermColumn PatchRecovery::terms(const Eigen::Vector3d& distance) const {
-  TermColumn result(terms_);
-  const int dim = mesh_.dim;
-  result[0] = 1.0;
-  result.segment(1, dim) = distance.head(dim);
-  Eigen::Index next = 1 + dim;
-  for (int i = 0; i < dim && next < terms_; ++i)
-    for (int j = i; j < dim; ++j)
-      result[next++] = distance[i] * distance[j];
-  return result;
-}
-
 /// Adds to the normal equations of the patches at the cells' corners; all cells count the same.
+template <class Sizes>
 void PatchRecovery::add_cells(const PointBatch& batch) {
   const Eigen::MatrixXd samples = sampling(*batch.table);
   for (std::int32_t c = 0; c < batch.num_cells; ++c) {
@@ -153,14 +190,16 @@ void PatchRecovery::add_cells(const PointBatch& batch) {
     const auto nodes = batch.block->cell(batch.first_cell + c);
     for (int a = 0; a < num_vertices(batch.block->type); ++a) {
       for (Eigen::Index s = 0; s < samples.rows(); ++s) {
-        const TermColumn t = terms(distance(places, s, nodes[a]));
+        const auto t = terms_at<Sizes>(&places(s, 0), mesh_.position(nodes[a]));
+        std::array<double, Sizes::fields> field; // of its own, so that the compiler may add several at once
+        std::copy_n(&fields(s, 0), Sizes::fields, field.begin());
         double* sum = &sums_[patch(batch.block->body, nodes[a]) * stride_];
-        for (int k = 0; k < terms_; ++k)
-          for (int l = k; l < terms_; ++l)
+        for (int k = 0; k < Sizes::terms; ++k)
+          for (int l = k; l < Sizes::terms; ++l)
             *sum++ += t[k] * t[l];
-        for (int k = 0; k < terms_; ++k)
-          for (int i = 0; i < fields_; ++i)
-            *sum++ += t[k] * fields(s, i);
+        for (int k = 0; k < Sizes::terms; ++k, sum += Sizes::fields)
+          for (int i = 0; i < Sizes::fields; ++i)
+            sum[i] += t[k] * field[i];
       }
     }
   }
@@ -201,6 +240,7 @@ void PatchRecovery::sum_over_ranks() {
   }
 }
 
+template <class Sizes>
 void PatchRecovery::fit() {
   const std::size_t count = sums_.size() / stride_, size = std::size_t(terms_) * fields_;
   coefficients_.resize(count * size);
@@ -214,39 +254,21 @@ void PatchRecovery::fit() {
     for (const auto node : field.nodes) {
       const auto sums = std::span(sums_).subspan(number * stride_, stride_);
       const bool on_boundary = sums.back() > 0.0 || bodies[node] > 1;
-      standing_[number] = fit_patch(sums, on_boundary, std::span(coefficients_).subspan(number * size, size));
+      const bool is_fitted = fit_patch<Sizes>(sums, std::span(coefficients_).subspan(number * size, size));
+      standing_[number] = !is_fitted ? Standing::Mean : on_boundary ? Standing::OneSided : Standing::Surrounded;
       ++number;
     }
 }
 
-/// Solves the normal equations, scaled to a unit diagonal so that the unit of length does not matter.
-PatchRecovery::Standing PatchRecovery::fit_patch(std::span<const double> sums, bool on_boundary,
-                                                 std::span<double> coefficients) const {
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_terms, most_terms>;
-  Square normal(terms_, terms_);
-  std::size_t next = 0;
-  for (int k = 0; k < terms_; ++k)
-    for (int l = k; l < terms_; ++l)
-      normal(k, l) = normal(l, k) = sums[next++];
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::Map<const Rows> right(&sums[next], terms_, fields_);
-  Eigen::Map<Rows> result(coefficients.data(), terms_, fields_);
-  if (normal.diagonal().minCoeff() > 0.0) {
-    const TermColumn scale = normal.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::LDLT<Square> factor(scale.asDiagonal() * normal * scale.asDiagonal());
-    if (factor.info() == Eigen::Success && factor.vectorD().minCoeff() > least_condition) {
-      result = scale.asDiagonal() * factor.solve(scale.asDiagonal() * right);
-      return on_boundary ? Standing::OneSided : Standing::Surrounded;
-    }
-  }
-  result.setZero();
-  if (normal(0, 0) > 0.0) result.row(0) = right.row(0) / normal(0, 0);
-  return Standing::Mean;
+PointRows PatchRecovery::at(const CellBlock& block, std::int32_t c, const PointRows& places,
+                            const Eigen::MatrixXd& corners) const {
+  return with_sizes(mesh_, [&]<class Sizes>(Sizes) { return blend<Sizes>(block, c, places, corners); });
 }
 
 /// Σ_a N_a(x) f_a(x) over the corners whose polynomials can be trusted most; they share what N_a the others have.
-PointRows PatchRecovery::at(const CellBlock& block, std::int32_t c, const PointRows& places,
-                            const Eigen::MatrixXd& corners) const {
+template <class Sizes>
+PointRows PatchRecovery::blend(const CellBlock& block, std::int32_t c, const PointRows& places,
+                               const Eigen::MatrixXd& corners) const {
   const auto nodes = block.cell(c).first(num_vertices(block.type));
   Standing best = Standing::Mean;
   for (const auto node : nodes)
@@ -259,15 +281,20 @@ PointRows PatchRecovery::at(const CellBlock& block, std::int32_t c, const PointR
       share -= corners.col(a);
     }
   share /= trusted;
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  PointRows result = PointRows::Zero(places.rows(), fields_);
-  for (std::size_t a = 0; a < nodes.size(); ++a) {
-    const std::size_t number = patch(block.body, nodes[a]);
-    if (standing_[number] != best) continue;
-    const Eigen::Map<const Rows> polynomial(&coefficients_[number * terms_ * fields_], terms_, fields_);
-    for (Eigen::Index q = 0; q < places.rows(); ++q)
-      result.row(q) +=
-          (corners(q, a) + share[q]) * terms(distance(places, q, nodes[a])).transpose().lazyProduct(polynomial);
+  PointRows result(places.rows(), Sizes::fields);
+  for (Eigen::Index q = 0; q < places.rows(); ++q) {
+    std::array<double, Sizes::fields> sum{}; // of its own, so that the compiler may add several fields at once
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const std::size_t number = patch(block.body, nodes[a]);
+      if (standing_[number] != best) continue;
+      const auto t = terms_at<Sizes>(&places(q, 0), mesh_.position(nodes[a]));
+      const double* coefficient = &coefficients_[number * Sizes::terms * Sizes::fields];
+      const double share_of_node = corners(q, a) + share[q];
+      for (int k = 0; k < Sizes::terms; ++k, coefficient += Sizes::fields)
+        for (int i = 0; i < Sizes::fields; ++i)
+          sum[i] += share_of_node * t[k] * coefficient[i];
+    }
+    std::copy(sum.begin(), sum.end(), &result(q, 0));
   }
   return result;
 }

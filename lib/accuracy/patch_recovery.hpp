@@ -9,14 +9,13 @@
 namespace amontons::accuracy {
 
 // Matrices of a cell live on the stack: there are many cells, and memory management would cost more than arithmetic.
-inline constexpr int most_points = 64, most_fields = 12, most_terms = 10;
-/// One point a row.
-using PointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_points, most_fields>;
+inline constexpr int most_points = 64, most_fields = 12;
+/// One point a row, whose values are neighbours in memory.
+using PointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, most_points, most_fields>;
 using PointColumn = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_points, 1>;
-using TermColumn = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_terms, 1>;
 
 /// 1, x_i, and with order 2 x_i x_j: as many as there are coefficients in a polynomial.
-int num_terms(int dim, int order);
+constexpr int num_terms(int dim, int order) { return order == 1 ? 1 + dim : 1 + dim + dim * (dim + 1) / 2; }
 
 /// Coordinates of the batch's points in cell `c`, one a row.
 PointRows point_places(const Mesh& mesh, const PointBatch& batch, std::int32_t c);
@@ -43,13 +42,15 @@ class PatchRecovery {
   enum class Standing : std::uint8_t { Mean, OneSided, Surrounded };
 
   void number_patches();
+  template <class Sizes>
   void add_cells(const PointBatch& batch);
   void add_boundary();
   void sum_over_ranks();
+  template <class Sizes>
   void fit();
-  Standing fit_patch(std::span<const double> sums, bool on_boundary, std::span<double> coefficients) const;
-  Eigen::Vector3d distance(const PointRows& places, Eigen::Index row, std::int32_t node) const;
-  TermColumn terms(const Eigen::Vector3d& distance) const;
+  template <class Sizes>
+  PointRows blend(const CellBlock& block, std::int32_t c, const PointRows& places,
+                  const Eigen::MatrixXd& corners) const;
   std::int32_t patch(std::int32_t body, std::int32_t node) const { return patches_[body][node]; }
 
   const Mesh& mesh_;

@@ -28,6 +28,36 @@ PointColumn volumes(const ErrorRule& rule, std::span<const double> own) {
   return parts * (given.sum() / parts.sum());
 }
 
+/// Dilatation of the nodes' displacements less that of the strains at the points of a cell.
+template <int dim>
+PointColumn less_dilatation(Space space, const Mesh& mesh, const PointBatch& batch, std::int32_t c,
+                            std::span<const double> displacement) {
+  using Square = Eigen::Matrix<double, dim, dim>;
+  using Column = Eigen::Map<const Eigen::Vector<double, dim>>;
+  const Tabulation& table = *batch.table;
+  const int points = table.rule->size();
+  const auto nodes = batch.block->cell(batch.first_cell + c);
+  const auto components = batch.strain.size() / batch.weights.size();
+  PointColumn result(points);
+  for (int q = 0; q < points; ++q) {
+    Square jacobian = Square::Zero(), slope = Square::Zero(); // d/dξ of X and u
+    double radius = 0.0, radial = 0.0;
+    const auto values = table.value(q), gradients = table.gradient(q);
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const Column x(mesh.position(nodes[a]).data()), u(&displacement[std::size_t(nodes[a]) * dim]),
+          gradient(&gradients[a * dim]);
+      radius += values[a] * x[0];
+      radial += values[a] * u[0];
+      jacobian += x * gradient.transpose();
+      slope += u * gradient.transpose();
+    }
+    const double* strain = &batch.strain[(std::size_t(c) * points + q) * components];
+    const double hoop = space == Space::Axisymmetric && radius > 0.0 ? radial / radius : 0.0;
+    result[q] = (slope * jacobian.inverse()).trace() + hoop - (strain[0] + strain[1] + strain[2]);
+  }
+  return result;
+}
+
 } // namespace
 
 ErrorRule::ErrorRule(const Tabulation& own) : table(&own) {
@@ -61,33 +91,11 @@ CellDifference difference(const PatchRecovery& recovery, const ErrorRule& rule, 
 
 PointColumn left_out_dilatation(Space space, const Mesh& mesh, const PointBatch& batch, std::int32_t c,
                                 std::span<const double> displacement) {
-  const Tabulation& table = *batch.table;
-  const int points = table.rule->size(), dim = mesh.dim;
   const ElementType corners = linear_element(batch.block->type);
   const bool has_mean = corners == ElementType::Quadrilateral4 || corners == ElementType::Hexahedron8;
-  if (!has_mean || space == Space::PlaneStress) return PointColumn::Zero(points);
-  const auto nodes = batch.block->cell(batch.first_cell + c);
-  const auto components = batch.strain.size() / batch.weights.size();
-  PointColumn result(points);
-  for (int q = 0; q < points; ++q) {
-    Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity(), slope = Eigen::Matrix3d::Zero(); // d/dξ of X and u
-    jacobian.topLeftCorner(dim, dim).setZero();
-    double radius = 0.0, radial = 0.0;
-    for (std::size_t a = 0; a < nodes.size(); ++a) {
-      const double* u = &displacement[std::size_t(nodes[a]) * dim];
-      radius += table.value(q)[a] * mesh.position(nodes[a])[0];
-      radial += table.value(q)[a] * u[0];
-      for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) {
-          jacobian(i, j) += table.gradient(q)[a * dim + j] * mesh.position(nodes[a])[i];
-          slope(i, j) += table.gradient(q)[a * dim + j] * u[i];
-        }
-    }
-    const double* strain = &batch.strain[(std::size_t(c) * points + q) * components];
-    const double hoop = space == Space::Axisymmetric && radius > 0.0 ? radial / radius : 0.0;
-    result[q] = (slope * jacobian.inverse()).trace() + hoop - (strain[0] + strain[1] + strain[2]);
-  }
-  return result;
+  if (!has_mean || space == Space::PlaneStress) return PointColumn::Zero(batch.table->rule->size());
+  return mesh.dim == 2 ? less_dilatation<2>(space, mesh, batch, c, displacement)
+                       : less_dilatation<3>(space, mesh, batch, c, displacement);
 }
 
 } // namespace amontons::accuracy

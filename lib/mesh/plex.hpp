@@ -94,6 +94,7 @@ class PlexReader {
   PlexVertices vertices(PetscInt point);
 
  private:
+  void read_flat_closure(PetscInt cell);
   void read_closure(PetscInt point);
   void read_carriers();
   PetscInt carrier(const FacetCorners& corners) const;

@@ -120,4 +120,12 @@ void ChangingBlock::solve(std::span<double> vector) const {
   scatter(changing_part_, changing_, vector);
 }
 
+std::vector<double> ChangingBlock::times_reference(std::span<const double> vector) const {
+  std::vector<double> result(size_, 0.0);
+  for (int j = 0; j < size_; ++j)
+    for (int i = 0; i < size_; ++i)
+      result[i] += reference_[std::size_t(j) * size_ + i] * vector[j];
+  return result;
+}
+
 } // namespace amontons

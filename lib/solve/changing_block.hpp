@@ -30,6 +30,8 @@ class ChangingBlock {
   bool factorize(std::span<const Change> changes);
   /// In place.
   void solve(std::span<double> vector) const;
+  /// S times a vector: the reference, without changes.
+  std::vector<double> times_reference(std::span<const double> vector) const;
 
   int size() const { return size_; }
   const std::vector<int>& changing() const { return changing_; }

@@ -112,6 +112,7 @@ class Newton : public IncrementNewton {
   void predict(Vec unknowns);
   bool solve_linear(Vec load, Vec result);
   void forget_failed_factorization();
+  void run(Vec unknowns);
 
   Problem& problem_;
   std::function<bool()> interrupted_;

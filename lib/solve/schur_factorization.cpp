@@ -3,6 +3,15 @@
 // they belong to the solid, are symmetric, and stay so under friction. MUMPS, asked for the Schur complement of B,
 // makes S = J_BB − J_BI J_II⁻¹ J_IB of the first tangent and factorizes J_II. A later tangent has S + (J_BB − J_BB of
 // the first), and a solve is a forward substitution with J_II, a dense system, a backward substitution.
+//
+// Partial steps. J_II, J_IB and J_BI are constant because the equations I are linear in all unknowns, and B sees x_I
+// linearly. So once the residual F_I is none, at x⁰, it stays none if x_I always follows x_B,
+//   x_I = x⁰_I + J_II⁻¹ J_IB a,   a = x⁰_B − x_B,
+// and Newton's method need not know x_I at all. It goes on with x_I = x⁰_I as if x_I had followed: there the residual
+// is
+//   F_I + J_IB a = 0,   F_B + J_BI J_II⁻¹ J_IB a = F_B + (J_BB − S) a
+// (all of the first tangent), and the step of B is (S + J_BB − J_BB of the first)⁻¹ times that: dense systems only. At
+// the end one solve with J_II lets x_I follow. Iterates of B, residuals and steps are the same as those of whole steps.
 #include "solve/schur_factorization.hpp"
 
 #include "base/timer.hpp"
@@ -45,19 +54,126 @@ SchurFactorization::SchurFactorization(const Problem& problem, SNES snes)
     : TangentSolver(problem, snes), correction_(problem.layout().new_vector()) {}
 
 bool SchurFactorization::solve(Vec right, Vec solution) {
+  Vec unknowns = nullptr;
+  AMT_PETSC(SNESGetSolution(snes_, &unknowns));
+  // With the factor of the old pattern. The residual stays what it is, for it is already that of the state put right.
+  if (problem_.pattern_number() != pattern_number_) put_right(unknowns);
   if (factorized_tangent_ != tangent_ && !factorize()) return false;
+  if (solve_partly(right, solution)) return true;
+  put_right(unknowns);
+  return solve_whole(right, solution);
+}
+
+bool SchurFactorization::solve_whole(Vec right, Vec solution) {
   AMT_PETSC(MatSolve(way_ == Way::Condensed ? constant_.get() : whole_.get(), right, solution));
   if (way_ == Way::Plain) return true;
   PetscReal norm = 0.0;
   AMT_PETSC(VecNorm(right, NORM_2, &norm));
   const double wanted = std::max(exactness * norm, smallest_residual());
-  if (measure_defect(right, solution) <= wanted) return true;
-  AMT_PETSC(MatSolve(constant_.get(), defect(), correction_));
-  AMT_PETSC(VecAXPY(solution, 1.0, correction_));
-  if (measure_defect(right, solution) <= wanted) return true;
+  bool is_exact = measure_defect(right, solution) <= wanted;
+  if (!is_exact) {
+    AMT_PETSC(MatSolve(constant_.get(), defect(), correction_));
+    AMT_PETSC(VecAXPY(solution, 1.0, correction_));
+    is_exact = measure_defect(right, solution) <= wanted;
+  }
+  if (is_exact) {
+    if (steps_ == Steps::WholeAtFirst) steps_ = Steps::Partial;
+    return true;
+  }
+  if (steps_ == Steps::Partial) steps_ = Steps::WholeAtFirst;
   if (!factorize_whole()) return false;
   AMT_PETSC(MatSolve(whole_.get(), right, solution));
   return true;
+}
+
+/// The step of B alone; false if it must be a whole one: because none of this Newton solve has shown yet that the
+/// constant part is what it was, because the other equations have a residual, or because the step is not exact.
+bool SchurFactorization::solve_partly(Vec right, Vec solution) {
+  if (steps_ != Steps::Partial || way_ != Way::Condensed) return false;
+  Vec unknowns = nullptr;
+  PetscReal norm = 0.0, others = 0.0;
+  AMT_PETSC(SNESGetSolution(snes_, &unknowns));
+  if (rest_.empty()) negligible_ = smallest_residual(); // the forces are those of x_I now, and are not later
+  auto step = in_block(right);
+  AMT_PETSC(VecCopy(right, defect()));
+  put_in_block(std::vector<double>(step.size(), 0.0), defect());
+  AMT_PETSC(VecNorm(defect(), NORM_2, &others));
+  if (others > negligible_) return false;
+
+  block_->solve(step);
+  AMT_PETSC(VecSet(solution, 0.0));
+  put_in_block(step, solution);
+  AMT_PETSC(VecNorm(right, NORM_2, &norm));
+  measure_defect(right, solution);
+  add_condensed(step, defect());
+  PetscReal left = 0.0;
+  AMT_PETSC(VecNorm(defect(), NORM_2, &left));
+  if (left > std::max(exactness * norm, negligible_)) return false;
+  if (rest_.empty()) rest_ = in_block(unknowns);
+  return true;
+}
+
+void SchurFactorization::allow_partial_steps() {
+  steps_ = Steps::WholeAtFirst;
+  rest_.clear();
+}
+
+void SchurFactorization::add_left_out(Vec unknowns, Vec residual) {
+  if (!rest_.empty()) add_condensed(distance_to_rest(unknowns), residual);
+}
+
+bool SchurFactorization::complete(Vec unknowns) {
+  steps_ = Steps::Whole;
+  const bool is_partial = !rest_.empty();
+  put_right(unknowns);
+  return is_partial;
+}
+
+/// Lets x_I follow x_B.
+void SchurFactorization::put_right(Vec unknowns) {
+  if (rest_.empty()) return;
+  const auto distance = distance_to_rest(unknowns);
+  AMT_PETSC(VecSet(defect(), 0.0));
+  add_condensed(distance, defect());
+  put_in_block(std::vector<double>(distance.size(), 0.0), defect());
+  holds_block_ = true;
+  AMT_PETSC(MatSolve(constant_.get(), defect(), correction_));
+  holds_block_ = false;
+  AMT_PETSC(VecAXPY(unknowns, 1.0, correction_));
+  rest_.clear();
+}
+
+/// Adds (J_IB a, (J_BB − S) a) of the first tangent, a = `block`.
+void SchurFactorization::add_condensed(std::span<const double> block, Vec residual) const {
+  VecHandle part;
+  AMT_PETSC(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, static_cast<PetscInt>(block.size()), block.data(), part.put()));
+  AMT_PETSC(MatMultAdd(coupling_, part, residual, residual));
+  const auto condensed = block_->times_reference(block);
+  VecArray values(residual);
+  for (std::size_t i = 0; i < condensed.size(); ++i)
+    values[equations_[i]] -= condensed[i];
+}
+
+std::vector<double> SchurFactorization::in_block(Vec vector) const {
+  const VecReader values(vector);
+  std::vector<double> block(equations_.size());
+  for (std::size_t i = 0; i < block.size(); ++i)
+    block[i] = values[equations_[i]];
+  return block;
+}
+
+void SchurFactorization::put_in_block(std::span<const double> block, Vec vector) const {
+  VecArray values(vector);
+  for (std::size_t i = 0; i < block.size(); ++i)
+    values[equations_[i]] = block[i];
+}
+
+/// a.
+std::vector<double> SchurFactorization::distance_to_rest(Vec unknowns) const {
+  auto distance = in_block(unknowns);
+  for (std::size_t i = 0; i < distance.size(); ++i)
+    distance[i] = rest_[i] - distance[i];
+  return distance;
 }
 
 /// The tangent in the matrix, condensed where that can be; false if it is singular.
@@ -99,8 +215,10 @@ bool SchurFactorization::eliminate_constant() {
     visit_row(matrix_, row,
               [this](auto, auto values) { reference_.insert(reference_.end(), values.begin(), values.end()); });
 
-  IsHandle kept;
+  IsHandle kept, all;
   AMT_PETSC(ISCreateGeneral(PETSC_COMM_SELF, size, equations_.data(), PETSC_COPY_VALUES, kept.put()));
+  AMT_PETSC(ISCreateStride(PETSC_COMM_SELF, problem_.layout().num_owned(), 0, 1, all.put()));
+  AMT_PETSC(MatCreateSubMatrix(matrix_, all, kept, MAT_INITIAL_MATRIX, coupling_.put()));
   MatHandle part;
   if (!problem_.tangent_is_symmetric()) part = symmetric_part(matrix_);
   const Mat source = part ? part.get() : matrix_;
@@ -204,7 +322,10 @@ PetscErrorCode SchurFactorization::solve_block(Mat schur, Mat right, Mat solutio
   PetscCall(MatDenseGetArray(solution, &values));
   PetscCall(guarded(factorization.caught_, [&] {
     for (PetscInt j = 0; j < columns; ++j)
-      factorization.block_->solve(std::span(values + j * size, size));
+      if (factorization.holds_block_)
+        std::fill_n(values + j * size, size, 0.0);
+      else
+        factorization.block_->solve(std::span(values + j * size, size));
   }));
   PetscCall(MatDenseRestoreArray(solution, &values));
   return 0;

@@ -21,6 +21,14 @@ class TangentSolver {
   /// The next system is no Newton step, which may be rough at first: solve it to the end.
   virtual void want_accuracy() {}
 
+  /// Until complete(), a step may leave out parts that do not matter to the next ones. A residual is then that of the
+  /// state in which they are put right only with add_left_out(). Collective.
+  virtual void allow_partial_steps() {}
+  /// Adds to the residual at `unknowns` what the parts left out would change in it. Collective.
+  virtual void add_left_out(Vec /*unknowns*/, Vec /*residual*/) {}
+  /// Puts the parts left out into the unknowns; false if there were none. Steps are whole from now on. Collective.
+  virtual bool complete(Vec /*unknowns*/) { return false; }
+
   /// Since begin(): sparse factorizations, and iterations of a Krylov method.
   int factorizations() const { return factorizations_; }
   int iterations() const { return iterations_; }

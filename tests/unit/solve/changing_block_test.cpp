@@ -69,6 +69,9 @@ TEST_CASE("a changing block solves with whatever equations change") {
     for (int i = 0; i < size; ++i)
       difference = std::max(difference, std::abs(changed[i] - plain[i]));
     CHECK(difference > 1e-3); // the changes matter
+    const auto product = block.times_reference(plain);
+    for (int i = 0; i < size; ++i)
+      CHECK(product[i] == doctest::Approx(right[i]).epsilon(1e-12));
   }
   REQUIRE(block.set_changing({}));
   CHECK(block.covers({}));

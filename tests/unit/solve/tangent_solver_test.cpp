@@ -109,10 +109,9 @@ struct Found {
   int newton = 0, factorizations = 0;
 };
 
-/// The upper block pressed onto the springs in five increments, held along x and y at a group; `solver`: a type of PETSc's
-/// preconditioners, or one of -shell_solver.
-Found press(const DofLayout& layout, std::unique_ptr<Springs> springs, const std::string& solver,
-            const char* held = "top") {
+/// The upper block above the springs, held along x and y at a group and pressed down at its top.
+std::unique_ptr<Problem> pressed_block(const DofLayout& layout, std::unique_ptr<Springs> springs,
+                                       const char* held = "top") {
   std::vector<std::unique_ptr<Form>> forms;
   const Elastic law{100.0, 0.3};
   forms.push_back(std::make_unique<BulkForm>(layout, Space::Solid, std::vector<SmallLaw>{law, law}));
@@ -123,13 +122,25 @@ Found press(const DofLayout& layout, std::unique_ptr<Springs> springs, const std
   for (int c = 0; c < 2; ++c)
     prescribed.push_back({held, c, Expression(0.0)});
   prescribed.push_back({"top", 2, Expression("-0.01*t", {})});
-  Problem problem(layout, std::move(forms), prescribed);
-  const OptionScope scope;
+  return std::make_unique<Problem>(layout, std::move(forms), prescribed);
+}
+
+/// `solver`: a type of PETSc's preconditioners, or one of -shell_solver; `search`: a type of its line searches.
+void choose(const Problem& problem, const std::string& solver, const char* search) {
   const bool is_type = solver == PCLU || solver == PCGAMG;
   PetscOptionsSetValue(nullptr, "-pc_type", is_type ? solver.c_str() : PCSHELL);
   if (!is_type) PetscOptionsSetValue(nullptr, "-shell_solver", solver.c_str());
-  PetscOptionsSetValue(nullptr, "-snes_linesearch_type", "basic");
+  PetscOptionsSetValue(nullptr, "-snes_linesearch_type", search);
   choose_newton_solver(problem);
+}
+
+/// That block pressed in five increments.
+Found press(const DofLayout& layout, std::unique_ptr<Springs> springs, const std::string& solver,
+            const char* held = "top", const char* search = "basic") {
+  const auto pressed = pressed_block(layout, std::move(springs), held);
+  Problem& problem = *pressed;
+  const OptionScope scope;
+  choose(problem, solver, search);
   Newton newton(problem, nullptr);
   Found found{.displacement = layout.new_vector()};
   for (int increment = 1; increment <= 5; ++increment) {
@@ -192,6 +203,63 @@ TEST_CASE("a condensed factorization is made anew when the pattern has grown") {
   CHECK(difference(condensed, reference) < 1e-12);
   if (is_alone()) CHECK(condensed.factorizations > 1);
   CHECK(condensed.factorizations <= reference.factorizations);
+}
+
+TEST_CASE("condensed steps may be shortened by a line search") {
+  const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, 3, 4, 5, 0.0);
+  const DofLayout layout(mesh, {}, {});
+  for (const char* search : {"bt", "l2"})
+    for (const double swirl : {0.0, 3.0}) {
+      CAPTURE(search);
+      CAPTURE(swirl);
+      const auto solve = [&](const std::string& solver) {
+        return press(layout, std::make_unique<Springs>(layout, "upper_bottom", 1e3, swirl), solver, "top", search);
+      };
+      const auto reference = solve("lu"), condensed = solve("schur");
+      CHECK(difference(condensed, reference) < 1e-12);
+    }
+}
+
+TEST_CASE("condensed steps leave the solid out in the course of a solve, and not where it ends") {
+  if (!is_alone()) return; // there nothing is condensed
+  const auto mesh = two_blocks_mesh(PETSC_COMM_WORLD, 3, 4, 5, 0.0);
+  const DofLayout layout(mesh, {}, {});
+  const auto owner = pressed_block(layout, std::make_unique<Springs>(layout, "upper_bottom", 1e3, 0.0));
+  Problem& problem = *owner;
+  const OptionScope scope;
+  choose(problem, "schur", "basic");
+  const auto u = layout.new_vector(), residual = layout.new_vector();
+  const auto of_others = [&] { // largest residual outside the equations that change, relative to the forces
+    REQUIRE(problem.residual(u, residual));
+    const double size = problem.force_scale();
+    {
+      VecArray values(residual);
+      for (const PetscInt equation : problem.changing_equations())
+        values[equation] = 0.0;
+    }
+    return largest(residual) / size;
+  };
+  std::vector<double> course; // at every iterate
+  std::size_t last = 0;
+  Newton newton(problem, [&] {
+    course.push_back(of_others());
+    return course.size() == last;
+  });
+  for (const std::size_t end : {std::size_t(3), std::size_t(0)}) { // interrupted in the middle, or to convergence
+    CAPTURE(end);
+    course.clear();
+    last = end;
+    AMT_PETSC(VecSet(u, 0.0));
+    problem.begin_increment(1.0, u);
+    const auto outcome = newton.solve(u);
+    CHECK(outcome.interrupted == (end > 0));
+    CHECK(outcome.converged == (end == 0));
+    REQUIRE(course.size() > 2);
+    CHECK(course[1] < 1e-12); // the first step is whole
+    CHECK(course[2] > 1e-3);
+    CHECK(of_others() < 1e-12);
+    if (end == 0) CHECK(course.back() < 1e-12); // convergence is judged where all is put right
+  }
 }
 
 TEST_CASE("a name that no solver has is refused") {
