@@ -113,13 +113,17 @@ void DofLayout::put_displacement(std::span<const double> local, Vec global) cons
   }
 }
 
-void DofLayout::add_forces(std::span<const double> local, Vec global) const {
+void DofLayout::add_forces(std::span<const double> local, Vec global) const { bring(local, global, ADD_VALUES); }
+
+void DofLayout::take_largest(std::span<const double> local, Vec global) const { bring(local, global, MAX_VALUES); }
+
+void DofLayout::bring(std::span<const double> local, Vec global, InsertMode how) const {
   {
     VecArray values(local_);
     std::copy(local.begin(), local.end(), values.data());
   }
-  AMT_PETSC(VecScatterBegin(scatter_, local_, global, ADD_VALUES, SCATTER_REVERSE));
-  AMT_PETSC(VecScatterEnd(scatter_, local_, global, ADD_VALUES, SCATTER_REVERSE));
+  AMT_PETSC(VecScatterBegin(scatter_, local_, global, how, SCATTER_REVERSE));
+  AMT_PETSC(VecScatterEnd(scatter_, local_, global, how, SCATTER_REVERSE));
 }
 
 } // namespace amontons

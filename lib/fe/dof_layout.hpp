@@ -67,8 +67,13 @@ class DofLayout {
   /// Adds a local array (num_local x dim) of nodal forces into a global vector: sums over ranks and tied groups.
   /// Collective.
   void add_forces(std::span<const double> local, Vec global) const;
+  /// Makes of the displacement equations of a global vector the largest of their own value and of what local arrays
+  /// (num_local x dim) have at their nodes, on all ranks and in all of a tied group. Collective.
+  void take_largest(std::span<const double> local, Vec global) const;
 
  private:
+  void bring(std::span<const double> local, Vec global, InsertMode how) const;
+
   const Mesh* mesh_;
   std::vector<TiedGroup> tied_;
   int rank_ = 0;

@@ -17,9 +17,11 @@ constexpr double unloaded_ratio = 1e-3;
 /// Machine epsilons of rounding in a sum over the neighbours of a node.
 constexpr double rounding_factor = 8.0;
 
-/// Size of the cells around each owned node: side of their box over their order.
-std::vector<double> cell_sizes(const Mesh& mesh) {
-  std::vector<double> sizes(mesh.num_local(), 0.0);
+/// Size of the cells around each equation's nodes, on whichever rank: side of their box over their order; zero for
+/// multipliers. Collective.
+VecHandle cell_sizes(const DofLayout& layout) {
+  const auto& mesh = layout.mesh();
+  std::vector<double> sizes(std::size_t(mesh.num_local()) * mesh.dim, 0.0);
   for (const auto& block : mesh.blocks)
     for (std::int32_t c = 0; c < block.size(); ++c) {
       double side = 0.0;
@@ -32,10 +34,15 @@ std::vector<double> cell_sizes(const Mesh& mesh) {
         side = std::max(side, high - low);
       }
       for (const auto node : block.cell(c))
-        sizes[node] = std::max(sizes[node], side / mesh.order);
+        for (int i = 0; i < mesh.dim; ++i) {
+          double& size = sizes[std::size_t(node) * mesh.dim + i];
+          size = std::max(size, side / mesh.order);
+        }
     }
-  sizes.resize(mesh.num_owned);
-  return sizes;
+  auto at_equations = layout.new_vector();
+  AMT_PETSC(VecSet(at_equations, 0.0));
+  layout.take_largest(sizes, at_equations);
+  return at_equations;
 }
 
 } // namespace
@@ -115,7 +122,8 @@ class Problem::SupportLoad : public Tangent {
 Problem::Problem(const DofLayout& layout, std::vector<std::unique_ptr<Form>> forms,
                  std::vector<PrescribedDisplacement> prescribed)
     : layout_(layout), forms_(std::move(forms)), prescribed_(std::move(prescribed)), raw_(layout.new_vector()),
-      support_motion_(layout.new_vector()), displacement_(std::size_t(layout.mesh().num_local()) * layout.dim()) {
+      shared_nodes_(layout.mesh(), layout.dim()), support_motion_(layout.new_vector()),
+      displacement_(std::size_t(layout.mesh().num_local()) * layout.dim()) {
   find_prescribed();
 }
 
@@ -279,9 +287,9 @@ void Problem::estimate_rounding(Vec unknowns) {
     // F = 1 + ∂u/∂X is rounded like 1 however small u is: as if u were off by that part of the cells' size.
     VecArray forces(scratch_);
     VecReader stiffness(diagonal_);
-    const auto sizes = cell_sizes(layout_.mesh());
+    const VecReader sizes(cell_sizes_);
     for (PetscInt i = 0; i < layout_.mesh().num_owned * layout_.dim(); ++i)
-      forces[i] = std::abs(forces[i]) + std::abs(stiffness[i]) * sizes[i / layout_.dim()];
+      forces[i] = std::abs(forces[i]) + std::abs(stiffness[i]) * sizes[i];
   }
   AMT_PETSC(VecNorm(scratch_, NORM_2, &rounding_));
   rounding_ *= rounding_factor * PETSC_MACHINE_EPSILON;
@@ -307,13 +315,12 @@ bool Problem::residual(Vec unknowns, Vec result) {
   const auto state = state_at(unknowns);
   AMT_PETSC(VecSet(raw_, 0.0));
   Residual residual(layout_, raw_);
-  double largest = 0.0; // of the partial sums' squared norms on this rank
+  double largest = 0.0; // of the squared norms of the forces of the first form, the first two, the first three ...
   std::vector<double> squares(forms_.size(), 0.0);
   for (std::size_t i = 0; i < forms_.size(); ++i) {
     const Phase phase(forms_[i]->name());
     forms_[i]->add_residual(state, residual);
-    for (const double force : residual.nodal())
-      squares[i] += force * force;
+    squares[i] = shared_nodes_.square_of_sum(residual.nodal());
   }
   if (support_) support_->add_residual(state, residual);
   MPI_Allreduce(MPI_IN_PLACE, squares.data(), static_cast<int>(squares.size()), MPI_DOUBLE, MPI_SUM, comm());
@@ -438,7 +445,10 @@ void Problem::assemble_constant(const State& state, Mat matrix) {
   MPI_Allreduce(MPI_IN_PLACE, &mean, 1, MPI_DOUBLE, MPI_SUM, comm());
   diagonal_ = layout_.new_vector();
   scratch_ = layout_.new_vector();
-  if (!is_linear()) mean = probe_diagonal(state);
+  if (!is_linear()) {
+    mean = probe_diagonal(state);
+    cell_sizes_ = cell_sizes(layout_);
+  }
   mean = mean > 0.0 ? mean / static_cast<double>(layout_.num_global()) : 1.0;
   for (const auto& equations : {std::span<const PetscInt>(prescribed_equations_), std::span(layout_.idle_equations())})
     for (const PetscInt equation : equations)

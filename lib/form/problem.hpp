@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/expression.hpp"
+#include "fe/shared_nodes.hpp"
 #include "form/form.hpp"
 #include "form/kept_rows.hpp"
 #include "form/sparsity.hpp"
@@ -140,11 +141,14 @@ class Problem {
   std::vector<std::uint8_t> prescribed_flags_; // per owned equation
   std::vector<PetscInt> prescribed_equations_; // owned, ascending
   std::vector<PetscInt> foreign_prescribed_;   // other ranks' prescribed equations that local forms touch, ascending
-  VecHandle raw_, support_motion_;
+  VecHandle raw_;
+  SharedNodes shared_nodes_;
+  VecHandle support_motion_;
   std::vector<double> displacement_;
   double time_ = 0.0, accepted_time_ = 0.0;
   KeptRows constant_rows_;       // of the constant tangent
   VecHandle diagonal_, scratch_; // of the constant tangent, or of the first one where the solid is not linear
+  VecHandle cell_sizes_;         // around each equation's nodes, where the solid is not linear
   double rounding_ = 0.0;
   double force_scale_ = 0.0, largest_accepted_force_ = 0.0;
   std::string failure_;

@@ -14,7 +14,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 import forming_cases as cases
 import self_contact_cases as rings
-from harness import CELL_NODES, TOP, Bench, load_deck
+from harness import CELL_NODES, TOP, Bench
 from solid_pictures import REFERENCE, SIMULATION, draw_deformed
 
 
@@ -114,35 +114,28 @@ def draw_sheet(panel, results):
     panel.set_title(f"way of the punch {results.time:g} mm", fontsize=10)
 
 
-def draw_square_cup(coarse, fine):
-    """The cup at the end of the `coarse` run; force on the punch, thickness along the planes of symmetry and the diagonal of
-    that run and of one with a `fine` mesh that went less far (list of states)."""
+def draw_square_cup(states):
+    """The cup at the end of a run; force on the punch, thickness along the planes of symmetry and the diagonal (list of
+    states)."""
     figure = plt.figure(figsize=(9, 7), layout="constrained")
-    draw_sheet(figure.add_subplot(2, 2, 1, projection="3d"), coarse[-1])
+    draw_sheet(figure.add_subplot(2, 2, 1, projection="3d"), states[-1])
     force, side, diagonal = (figure.add_subplot(2, 2, 2 + k) for k in range(3))
-    for states, style in ((coarse, {}), (fine, {"ls": "--"})):
-        last = states[-1]
-        cells = f"{last.summary['scene']['cells'] - 12} cells"  # but those of the frame
-        force.plot(last.history["time"], -4.0 * last.history["contact_punch_force_z"], color=SIMULATION["color"], **style, label=cells)
-        for state, shade in zip(states, ("0.6", "k", SIMULATION["color"])):
-            for panel, slope in ((side, 0), (diagonal, 1)):
-                panel.plot(*cases.thickness_along(state, slope), color=shade, **style, label=f"{cells}, {state.time:.3g} mm")
+    history = states[-1].history
+    force.plot(history["time"], -4.0 * history["contact_punch_force_z"], color=SIMULATION["color"])
+    for state, shade in zip(states, ("0.6", "k", SIMULATION["color"])):
+        for panel, slope in ((side, 0), (diagonal, 1)):
+            panel.plot(*cases.thickness_along(state, slope), color=shade, label=f"{state.time:.3g} mm")
     for panel, where in ((side, "a plane of symmetry"), (diagonal, "the diagonal")):
-        panel.set(xlabel=f"distance from the middle along {where}, mm", ylabel="thickness, mm", ylim=(0.6, 1.1))
-    force.set(xlabel="way of the punch, mm", ylabel="force on the whole punch, kN", xlim=(0, None), ylim=(0, None))
-    for panel in (force, side, diagonal):
+        panel.set(xlabel=f"distance from the middle along {where}, mm", ylabel="thickness, mm")
         panel.legend(fontsize=8)
+    force.set(xlabel="way of the punch, mm", ylabel="force on the whole punch, kN", xlim=(0, None), ylim=(0, None))
     return figure
 
 
 def square_cup(bench):
-    """Twice as deep as the deck, where the coarse mesh keeps no tighter bounds than these."""
-    automatic = load_deck("square_cup")["steps"][0]["increments"]
-    loose = {"certificate.penetration": 0.25, "certificate.complementarity": 0.1}
-    ways = [{"name": f"to_{way}", "to": way, "increments": automatic} for way in (10, 20, 40)]
-    coarse = bench.run("square_cup", {**loose, "steps": ways}, ranks=1)
-    fine = bench.run("square_cup", {**loose, "steps": ways[:1], "mesh.parameters": cases.FINER}, ranks=1)
-    return draw_square_cup([coarse.at(way) for way in (10.0, 20.0, 40.0)], [fine])
+    results = bench.run("square_cup", {"output.every": 1}, ranks=1)
+    time = results.history["time"]
+    return draw_square_cup([results.at(time[np.abs(time - way).argmin()]) for way in (10.0, 20.0, 40.0)])
 
 
 def draw_tube(solid, section):

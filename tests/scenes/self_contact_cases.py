@@ -262,6 +262,15 @@ def tube_first_fold(bench):
     bench.below("lowest force / force at the end, once the fold is closed", before.min() / force[-1], 0.5)
 
 
+def tube_ranks(bench):
+    """Both folds, on one rank and on two: with equal increments every state is the same. (Automatic ones follow the count of
+    iterations, which rounding decides where a fold snaps: README.md.)"""
+    one, two = (bench.run("tube_buckling_2d", {"steps.0.increments": 600}, ranks=ranks).history for ranks in (1, 2))
+    largest = np.abs(one["reaction_top_y"]).max()
+    for name, scale in (("reaction_top_y", largest), ("contact_folds_force_y", largest), ("energy_dissipated", one["energy_dissipated"][-1])):
+        bench.below(f"2 ranks: {name} in the whole history", np.abs(one[name] - two[name]).max() / scale, 1e-8)
+
+
 # --- ten discs --------------------------------------------------------------------------------------------------------
 
 
@@ -351,7 +360,7 @@ CASES = {
         "oval": ring_oval,
         "oval_friction": ring_oval_friction,
     },
-    "tube_buckling_2d": {"first_fold": tube_first_fold},
+    "tube_buckling_2d": {"first_fold": tube_first_fold, "ranks": tube_ranks},
     "tube_buckling_3d": {"peak": tube_quarter_peak},
     "ten_discs": {"balance": ten_discs},
 }
