@@ -6,7 +6,7 @@ namespace amontons {
 
 namespace {
 
-/// What a set-up of multigrid costs, in iterations: 25 to 45 (README.md).
+/// What a set-up of multigrid costs in large runs, in iterations (README.md).
 constexpr double price = 50.0;
 
 /// Powers of ten by which the last solve has made the residual smaller.
