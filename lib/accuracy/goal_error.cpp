@@ -14,7 +14,7 @@ struct CellParts {
   Eigen::MatrixXd strain, stress; // recovered minus computed
   Eigen::VectorXd pressure;       // recovered mean stress
   Eigen::VectorXd left_out;       // see left_out_dilatation
-  accuracy::PointColumn volumes;
+  Eigen::VectorXd volumes;
 };
 
 /// Visits all cells with their numbers.

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 namespace amontons::accuracy {
@@ -67,9 +68,14 @@ Eigen::MatrixXd sampling(const Tabulation& table) {
 
 /// The corners of all bodies, on every rank that has them, whether it has a cell of that body or not. Collective.
 std::vector<NodeField> corners_of_bodies(const Mesh& mesh) {
-  std::vector<std::int32_t> all(mesh.num_local());
-  std::iota(all.begin(), all.end(), 0);
-  const NodeSpace nodes(mesh, {{"node", std::move(all)}});
+  int ranks = 1;
+  MPI_Comm_size(mesh.comm, &ranks);
+  std::optional<NodeSpace> shared;
+  if (ranks > 1) {
+    std::vector<std::int32_t> all(mesh.num_local());
+    std::iota(all.begin(), all.end(), 0);
+    shared.emplace(mesh, std::vector<NodeField>{{"node", std::move(all)}});
+  }
   std::vector<NodeField> result;
   for (std::size_t body = 0; body < mesh.bodies.size(); ++body) {
     std::vector<std::vector<double>> marks(1, std::vector<double>(mesh.num_local(), 0.0));
@@ -77,9 +83,11 @@ std::vector<NodeField> corners_of_bodies(const Mesh& mesh) {
       for (std::int32_t c = 0; block.body == static_cast<std::int32_t>(body) && c < block.size(); ++c)
         for (int a = 0; a < num_vertices(block.type); ++a)
           marks[0][block.cell(c)[a]] = 1.0;
-    const VecHandle sum = nodes.new_vector();
-    nodes.add(marks, sum);
-    nodes.gather(sum, marks);
+    if (shared) {
+      const VecHandle sum = shared->new_vector();
+      shared->add(marks, sum);
+      shared->gather(sum, marks);
+    }
     auto& field = result.emplace_back(NodeField{mesh.bodies[body], {}});
     for (std::int32_t node = 0; node < mesh.num_local(); ++node)
       if (marks[0][node] > 0.0) field.nodes.push_back(node);
