@@ -166,11 +166,6 @@ void SolveOutcome::add_effort(const SolveOutcome& other) {
   factorizations += other.factorizations;
 }
 
-void smooth_by_factors() {
-  default_option("-mg_levels_pc_type", PCBJACOBI);
-  default_option("-mg_levels_sub_pc_type", PCICC);
-}
-
 bool set_if_absent(const std::string& name, const std::string& value) {
   PetscBool present = PETSC_FALSE;
   AMT_PETSC(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &present));
@@ -203,7 +198,10 @@ std::string choose_linear_solver(const Problem& problem) {
     default_option("-ksp_rtol", "1e-8");
     default_option("-ksp_max_it", "2000");
     default_option("-pc_type", PCGAMG);
-    if (symmetric && is_aggregation()) smooth_by_factors();
+    if (symmetric && is_aggregation()) {
+      default_option("-mg_levels_pc_type", PCBJACOBI);
+      default_option("-mg_levels_sub_pc_type", PCICC);
+    }
     return symmetric ? "conjugate gradients with smoothed-aggregation multigrid"
                      : "GMRES with smoothed-aggregation multigrid";
   }
@@ -331,8 +329,17 @@ Newton::Newton(Problem& problem, std::function<bool()> interrupted)
   chosen_search_ = chosen_line_search(snes_);
   if (PreconditionerLag::applies_to(snes_)) lag_.emplace();
   tangent_solver_ = new_tangent_solver(problem, snes_);
+  use_light_multigrid();
   if (problem.layout().num_extra() == 0)
     AMT_PETSC(MatSetNearNullSpace(matrix_, modes_beside_supports(problem, rigid_body_modes(problem.layout()))));
+}
+
+/// After the tangent solver, which takes preconditioners of users' making for its own.
+void Newton::use_light_multigrid() {
+  KSP solver = nullptr;
+  AMT_PETSC(SNESGetKSP(snes_, &solver));
+  AMT_PETSC(KSPSetOperators(solver, matrix_, matrix_));
+  if (LightMultigrid::applies_to(solver)) light_.emplace(solver);
 }
 
 void Newton::set_steps(const StepLength& steps) {

@@ -5,6 +5,7 @@
 
 #include "form/problem.hpp"
 #include "solve/increment_newton.hpp"
+#include "solve/light_multigrid.hpp"
 #include "solve/preconditioner_lag.hpp"
 #include "solve/solve_course.hpp"
 #include "solve/trouble.hpp"
@@ -27,11 +28,6 @@ void default_option(const std::string& name, const std::string& value);
 /// Takes back what default_option() has set, so that the next problem of this process (a finer mesh) gets a choice of
 /// its own.
 void forget_default_options();
-
-/// Incomplete Cholesky as multigrid's smoother (under Chebyshev's iteration) instead of the diagonal, unless the user
-/// has chosen: what cells that are much longer than high couple strongly, it nearly solves for. A fifth of the
-/// iterations on graded meshes of contact (README.md), and no dearer on even ones.
-void smooth_by_factors();
 
 /// Sets the defaults for a problem: direct (MUMPS, Cholesky where the tangent is symmetric, SCOTCH ordering) or, above
 /// a size where factorization no longer pays and for displacement-only problems, CG with smoothed-aggregation
@@ -108,6 +104,7 @@ class Newton : public IncrementNewton {
   static PetscErrorCode test_convergence(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                          SNESConvergedReason* reason, void* self);
   static PetscErrorCode search_energy(SNESLineSearch search, void* self);
+  void use_light_multigrid();
   void limit_linear_solve(double norm);
   void predict(Vec unknowns);
   bool solve_linear(Vec load, Vec result);
@@ -123,6 +120,7 @@ class Newton : public IncrementNewton {
   SolveCourse course_; // of the running solve
   std::string chosen_search_;
   std::optional<PreconditionerLag> lag_; // absent for factorizations
+  std::optional<LightMultigrid> light_;  // where multigrid was chosen
   std::exception_ptr kept_;
   int factorizations_ = 0, least_iterations_ = 0;
   double reduction_ = 0.0, first_norm_ = 0.0; // norm of the residual at the start of the running solve

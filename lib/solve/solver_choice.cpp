@@ -1,6 +1,7 @@
 #include "solve/solver_choice.hpp"
 
 #include "base/log.hpp"
+#include "solve/light_multigrid.hpp"
 #include "solve/newton.hpp"
 #include "solve/schur_factorization.hpp"
 
@@ -45,16 +46,16 @@ std::string choose_newton_solver(const Problem& problem) {
   const auto& layout = problem.layout();
   const PetscInt size = layout.num_global();
   const bool is_free = option("-pc_type").empty() && option("-ksp_type").empty();
+  // Multigrid's smoother; bounds have another (bounded_newton): README.md.
+  register_icc_single();
+  if (layout.num_extra() == 0 && problem.tangent_is_symmetric()) default_option("-mg_levels_pc_type", pc_icc_single);
   auto words = choose_linear_solver(problem);
-  // Not for the matrices of bounds, which bounded_newton chooses for: README.md.
-  default_option("-mg_levels_sub_pc_factor_mat_ordering_type", MATORDERINGRCM);
   const bool is_direct = option("-pc_type") == PCCHOLESKY || option("-pc_type") == PCLU;
   const bool is_2d = layout.dim() == 2;
   const bool is_displacement_only = layout.num_extra() == 0;
   if (is_free && is_direct && is_displacement_only && !is_2d && size > krylov_from_3d) {
     AMT_PETSC(PetscOptionsSetValue(nullptr, "-pc_type", PCGAMG));
     AMT_PETSC(PetscOptionsSetValue(nullptr, "-ksp_type", problem.tangent_is_symmetric() ? KSPCG : KSPGMRES));
-    if (problem.tangent_is_symmetric()) smooth_by_factors();
     default_option("-ksp_max_it", "2000");
     words = "smoothed-aggregation multigrid with conjugate gradients or GMRES";
   } else if (is_free && is_direct && can_condense(problem) && condensing_pays(problem)) {
