@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <unistd.h>
 
 namespace amontons {
 
@@ -15,9 +16,10 @@ namespace {
 /// Unknowns above which factorizations cost more than about 15 back-substitutions.
 constexpr PetscInt kept_from_2d = 400'000;
 constexpr PetscInt kept_from_3d = 20'000;
-/// Unknowns above which memory counts more than the time of multigrid's set-up: coarse matrices made "all at once" save
-/// 1.3 kB an unknown and take ten times as long, a quarter of a run of four increments.
-constexpr PetscInt lean_products_from = 3'000'000;
+/// Bytes an unknown that a run with multigrid on several ranks takes in 3D (measured: 3.9 kB at 682,000 unknowns), and
+/// the part of the memory up to which that is no matter. Coarse matrices made "all at once" save 1.2 kB of them, and a
+/// set-up takes five times as long.
+constexpr double bytes_with_multigrid = 4000.0, memory_at_ease = 0.85;
 
 /// Operations of a symmetric factorization by MUMPS with SCOTCH over the power of the unknowns with which they grow:
 /// 71 to 81 in 2D (17,000 to 69,000 unknowns), 12 to 16 in 3D (3,000 to 25,000).
@@ -32,6 +34,19 @@ bool condensing_pays(const Problem& problem) {
                         (layout.dim() == 2 ? operations_2d * std::pow(size, 1.5) : operations_3d * std::pow(size, 2.0));
   const double dense = 2.0 / 3.0 * std::pow(static_cast<double>(problem.changing_equations().size()), 3.0);
   return dense <= sparse;
+}
+
+/// Bytes that the machines of these ranks have. Collective.
+double memory_of_machines(MPI_Comm comm) {
+  MPI_Comm neighbours = MPI_COMM_NULL;
+  int ranks_here = 1;
+  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &neighbours);
+  MPI_Comm_size(neighbours, &ranks_here);
+  MPI_Comm_free(&neighbours);
+  double bytes =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)) / ranks_here;
+  MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_DOUBLE, MPI_SUM, comm);
+  return bytes;
 }
 
 std::string option(const char* name) {
@@ -81,7 +96,8 @@ std::string choose_newton_solver(const Problem& problem) {
     int ranks = 1;
     MPI_Comm_size(problem.comm(), &ranks);
     // PETSc 3.18 has this for several ranks only.
-    if (ranks > 1 && size > lean_products_from) default_option("-matptap_via", "allatonce");
+    if (ranks > 1 && size * bytes_with_multigrid > memory_at_ease * memory_of_machines(problem.comm()))
+      default_option("-matptap_via", "allatonce");
   }
   return words;
 }
