@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -30,26 +31,57 @@ std::array<double, 2> sizes(const std::array<double, 6>& wrench, Space space) {
   return {std::hypot(wrench[0], wrench[1], wrench[2]), std::hypot(wrench[3], wrench[4], wrench[5])};
 }
 
+/// Places and displacements of the nodes of a cell: looked up once for all of its points.
+template <int dim>
+struct CellMotion {
+  static constexpr std::size_t most_nodes = 27; // hexahedra of order 2
+  std::array<Point<dim>, most_nodes> X, u;
+
+  void look_up(const CertificateInput& input, std::span<const std::int32_t> nodes) {
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      X[a] = Eigen::Map<const Point<dim>>(input.mesh.coordinates.data() + std::size_t(nodes[a]) * dim);
+      u[a] = Eigen::Map<const Point<dim>>(input.displacement.data() + std::size_t(nodes[a]) * dim);
+    }
+  }
+};
+
 /// Volume after deformation over volume before, at a point of a cell: det(∂x/∂ξ) / det(∂X/∂ξ), with the hoop.
 template <int dim>
-double volume_ratio(const CertificateInput& input, std::span<const std::int32_t> nodes, std::span<const double> value,
+double volume_ratio(const CellMotion<dim>& cell, Space space, std::span<const double> value,
                     std::span<const double> gradient) {
   using Matrix = Eigen::Matrix<double, dim, dim>;
   Matrix before = Matrix::Zero(), after;
   Matrix moved = Matrix::Zero();
   double radius = 0.0, widening = 0.0;
-  for (std::size_t a = 0; a < nodes.size(); ++a) {
-    const Eigen::Map<const Point<dim>> X(input.mesh.coordinates.data() + std::size_t(nodes[a]) * dim);
-    const Eigen::Map<const Point<dim>> u(input.displacement.data() + std::size_t(nodes[a]) * dim);
+  for (std::size_t a = 0; a < value.size(); ++a) {
     const Eigen::Map<const Point<dim>> slope(gradient.data() + a * dim);
-    before += X * slope.transpose();
-    moved += u * slope.transpose();
-    radius += value[a] * X[0];
-    widening += value[a] * u[0];
+    before += cell.X[a] * slope.transpose();
+    moved += cell.u[a] * slope.transpose();
+    radius += value[a] * cell.X[a][0];
+    widening += value[a] * cell.u[a][0];
   }
   after = before + moved;
   const double ratio = after.determinant() / before.determinant();
-  return input.space == Space::Axisymmetric ? ratio * (1.0 + widening / radius) : ratio;
+  return space == Space::Axisymmetric ? ratio * (1.0 + widening / radius) : ratio;
+}
+
+template <int dim>
+Worst worst_volume(const CertificateInput& input) {
+  const Mesh& mesh = input.mesh;
+  Worst worst{-std::numeric_limits<double>::infinity(), ""};
+  CellMotion<dim> cell;
+  for (const CellBlock& block : mesh.blocks) {
+    const Tabulation& table = tabulation(block.type, 2 * element_order(block.type));
+    for (std::int32_t c = 0; c < block.size(); ++c) {
+      const auto nodes = block.cell(c);
+      cell.look_up(input, nodes);
+      for (int q = 0; q < table.rule->size(); ++q)
+        worst.offer(-volume_ratio(cell, input.space, table.value(q), table.gradient(q)), [&] {
+          return "body '" + mesh.bodies[block.body] + "', cell with a corner at " + place_text(mesh.position(nodes[0]));
+        });
+    }
+  }
+  return worst;
 }
 
 } // namespace
@@ -105,21 +137,7 @@ BalanceChecks check_balance(const CertificateInput& input, const std::array<doub
 }
 
 Worst check_volume(const CertificateInput& input) {
-  const Mesh& mesh = input.mesh;
-  Worst worst{-std::numeric_limits<double>::infinity(), ""};
-  for (const CellBlock& block : mesh.blocks) {
-    const Tabulation& table = tabulation(block.type, 2 * element_order(block.type));
-    for (std::int32_t c = 0; c < block.size(); ++c)
-      for (int q = 0; q < table.rule->size(); ++q) {
-        const auto nodes = block.cell(c);
-        const double ratio = mesh.dim == 2 ? volume_ratio<2>(input, nodes, table.value(q), table.gradient(q))
-                                           : volume_ratio<3>(input, nodes, table.value(q), table.gradient(q));
-        worst.offer(-ratio, [&] {
-          return "body '" + mesh.bodies[block.body] + "', cell with a corner at " + place_text(mesh.position(nodes[0]));
-        });
-      }
-  }
-  return over_ranks(mesh.comm, std::move(worst));
+  return over_ranks(input.mesh.comm, input.mesh.dim == 2 ? worst_volume<2>(input) : worst_volume<3>(input));
 }
 
 } // namespace amontons::accuracy
