@@ -124,6 +124,7 @@ template <int B>
 AMT_INLINE void product(const BlockRows& rows, const float* numbers, double unit, bool adds, const double* x,
                         double* y) {
   for (std::int32_t i = 0; i < rows.size(); ++i) {
+    if (adds && rows.start[i] == rows.start[i + 1]) continue; // most rows have no columns of other ranks
     std::array<Lanes<B>, B> sum;
     for (std::int32_t e = rows.start[i]; e < rows.start[i + 1]; ++e) {
       const float* block = numbers + static_cast<std::size_t>(e) * B * B;
