@@ -1,5 +1,7 @@
 #include "solve/light_multigrid.hpp"
 
+#include "solve/shell_preconditioner.hpp"
+
 #include <memory>
 #include <petsc/private/petscimpl.h> // the state of an object has no other header
 
@@ -162,24 +164,11 @@ bool LightMultigrid::applies_to(KSP solver) {
   return is_aggregation && is_aij;
 }
 
-LightMultigrid::LightMultigrid(KSP solver) {
-  PC pc = nullptr;
-  PCType type = nullptr;
-  AMT_PETSC(KSPGetPC(solver, &pc));
-  AMT_PETSC(PCGetType(pc, &type));
-  type_ = type;
-  AMT_PETSC(PCSetType(pc, PCSHELL));
-  AMT_PETSC(PCSetOptionsPrefix(pc, "light_")); // PETSc reads the options again later: -pc_type is the inner one's
-  AMT_PETSC(PCShellSetContext(pc, this));
-  AMT_PETSC(PCShellSetSetUp(pc, set_up));
-  AMT_PETSC(PCShellSetApply(pc, apply));
-}
+LightMultigrid::LightMultigrid(KSP solver)
+    : type_(take_place_of_preconditioner(solver, "light_", this, set_up, apply)) {}
 
 PetscErrorCode LightMultigrid::set_up(PC pc) {
-  void* self = nullptr;
-  PCShellGetContext(pc, &self);
-  std::exception_ptr known_by_its_code;
-  return guarded(known_by_its_code, [&] { static_cast<LightMultigrid*>(self)->rebuild(pc); });
+  return with_context<LightMultigrid>(pc, [&](LightMultigrid& self) { self.rebuild(pc); });
 }
 
 void LightMultigrid::rebuild(PC outer) {
@@ -239,13 +228,9 @@ void LightMultigrid::follow_tangent() {
 }
 
 PetscErrorCode LightMultigrid::apply(PC pc, Vec in, Vec out) {
-  void* self = nullptr;
-  PCShellGetContext(pc, &self);
-  auto& multigrid = *static_cast<LightMultigrid*>(self);
-  std::exception_ptr known_by_its_code;
-  return guarded(known_by_its_code, [&] {
-    multigrid.follow_tangent();
-    AMT_PETSC(PCApply(multigrid.inner_, in, out));
+  return with_context<LightMultigrid>(pc, [&](LightMultigrid& self) {
+    self.follow_tangent();
+    AMT_PETSC(PCApply(self.inner_, in, out));
   });
 }
 

@@ -1,28 +1,17 @@
 #include "solve/whole_preconditioner.hpp"
 
+#include "solve/shell_preconditioner.hpp"
+
 namespace amontons {
 
 WholePreconditioner::WholePreconditioner(SNES snes) : snes_(snes) {
   KSP ksp = nullptr;
-  PC pc = nullptr;
-  PCType type = nullptr;
   AMT_PETSC(SNESGetKSP(snes, &ksp));
-  AMT_PETSC(KSPGetPC(ksp, &pc));
-  AMT_PETSC(PCGetType(pc, &type));
-  type_ = type;
-  AMT_PETSC(PCSetType(pc, PCSHELL));
-  AMT_PETSC(PCSetOptionsPrefix(pc, "whole_")); // PETSc reads the options again later: -pc_type is the inner one's
-  AMT_PETSC(PCShellSetContext(pc, this));
-  AMT_PETSC(PCShellSetSetUp(pc, set_up));
-  AMT_PETSC(PCShellSetApply(pc, apply));
+  type_ = take_place_of_preconditioner(ksp, "whole_", this, set_up, apply);
 }
 
 PetscErrorCode WholePreconditioner::set_up(PC pc) {
-  void* self = nullptr;
-  PCShellGetContext(pc, &self);
-  auto& preconditioner = *static_cast<WholePreconditioner*>(self);
-  std::exception_ptr known_by_its_code;
-  return guarded(known_by_its_code, [&] { preconditioner.rebuild(); });
+  return with_context<WholePreconditioner>(pc, [](WholePreconditioner& self) { self.rebuild(); });
 }
 
 void WholePreconditioner::rebuild() {
@@ -58,17 +47,13 @@ void WholePreconditioner::rebuild() {
 }
 
 PetscErrorCode WholePreconditioner::apply(PC pc, Vec in, Vec out) {
-  void* self = nullptr;
-  PCShellGetContext(pc, &self);
-  auto& preconditioner = *static_cast<WholePreconditioner*>(self);
-  std::exception_ptr known_by_its_code;
-  return guarded(known_by_its_code, [&] {
-    AMT_PETSC(VecSet(preconditioner.in_, 0.0));
-    AMT_PETSC(VecScatterBegin(preconditioner.scatter_, in, preconditioner.in_, INSERT_VALUES, SCATTER_REVERSE));
-    AMT_PETSC(VecScatterEnd(preconditioner.scatter_, in, preconditioner.in_, INSERT_VALUES, SCATTER_REVERSE));
-    AMT_PETSC(PCApply(preconditioner.inner_, preconditioner.in_, preconditioner.out_));
-    AMT_PETSC(VecScatterBegin(preconditioner.scatter_, preconditioner.out_, out, INSERT_VALUES, SCATTER_FORWARD));
-    AMT_PETSC(VecScatterEnd(preconditioner.scatter_, preconditioner.out_, out, INSERT_VALUES, SCATTER_FORWARD));
+  return with_context<WholePreconditioner>(pc, [&](WholePreconditioner& self) {
+    AMT_PETSC(VecSet(self.in_, 0.0));
+    AMT_PETSC(VecScatterBegin(self.scatter_, in, self.in_, INSERT_VALUES, SCATTER_REVERSE));
+    AMT_PETSC(VecScatterEnd(self.scatter_, in, self.in_, INSERT_VALUES, SCATTER_REVERSE));
+    AMT_PETSC(PCApply(self.inner_, self.in_, self.out_));
+    AMT_PETSC(VecScatterBegin(self.scatter_, self.out_, out, INSERT_VALUES, SCATTER_FORWARD));
+    AMT_PETSC(VecScatterEnd(self.scatter_, self.out_, out, INSERT_VALUES, SCATTER_FORWARD));
   });
 }
 
