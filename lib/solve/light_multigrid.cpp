@@ -62,7 +62,9 @@ PetscErrorCode set_up_factors(PC pc) {
     AMT_PETSC(MatGetNonzeroState(own, &pattern));
     if (!held.factors || pattern != held.pattern) held.factors.emplace(own, block_size(matrix));
     held.pattern = pattern;
-    if (!held.factors->factorize(own)) AMT_PETSC(PCSetFailedReason(pc, PC_FACTOR_NUMERIC_ZEROPIVOT));
+    int failed = !held.factors->factorize(own); // on any rank: the others would go on without it
+    MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PetscObjectComm(reinterpret_cast<PetscObject>(pc)));
+    if (failed) AMT_PETSC(PCSetFailedReason(pc, PC_FACTOR_NUMERIC_ZEROPIVOT));
   });
 }
 
@@ -204,7 +206,10 @@ KSP LightMultigrid::smoother() {
 void LightMultigrid::lighten() {
   PetscInt levels = 0;
   const KSP finest = smoother();
-  if (!finest) return;
+  if (!finest) {
+    product_.reset();
+    return;
+  }
   if (!product_ || product_->is_outdated())
     product_.emplace(matrix_);
   else

@@ -332,10 +332,6 @@ void SinglePrecisionMatrix::multiply_add(const double* x, double* y) const {
   multiply_blocks(rows_, numbers_.data(), unit_, true, x, y);
 }
 
-std::size_t SinglePrecisionMatrix::bytes() const {
-  return numbers_.size() * sizeof(float) + (rows_.column.size() + rows_.start.size()) * sizeof(std::int32_t);
-}
-
 SinglePrecisionFactors::SinglePrecisionFactors(Mat matrix, int block) : unit_(unit_of(matrix)) {
   const BlockRows rows = block_rows(matrix, block);
   source_ = cuthill_mckee(rows);
@@ -417,11 +413,6 @@ bool SinglePrecisionFactors::try_to_factorize(Mat matrix, double shift) {
 
 void SinglePrecisionFactors::solve(const double* b, double* x) const {
   substitute_blocks({lower_, source_.data(), numbers_.data(), inverse_.data(), unit_, work_.data()}, b, x);
-}
-
-std::size_t SinglePrecisionFactors::bytes() const {
-  return (numbers_.size() + inverse_.size()) * sizeof(float) + work_.size() * sizeof(double) +
-         (lower_.column.size() + lower_.start.size() + 2 * source_.size()) * sizeof(std::int32_t);
 }
 
 } // namespace amontons

@@ -29,7 +29,6 @@ class SinglePrecisionMatrix {
   /// y = A x, or y += A x.
   void multiply(const double* x, double* y) const;
   void multiply_add(const double* x, double* y) const;
-  std::size_t bytes() const;
 
  private:
   BlockRows rows_;
@@ -49,7 +48,6 @@ class SinglePrecisionFactors {
   void solve(const double* b, double* x) const;
   /// What was added to the diagonal, as a part of it.
   double shift() const { return shift_; }
-  std::size_t bytes() const;
 
  private:
   template <int B>
